@@ -4,30 +4,17 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator
-from typing import NamedTuple
 
 import numpy as np
 
 from pzt_ident.diagnosis.fit import EDGE, Fit, fit_at
 from pzt_ident.model.block import Modes, Place
-from pzt_ident.model.chain import Entry
+from pzt_ident.model.modes import Mode, Values, modes_of, second_modes
 from pzt_ident.model.registry import word_of
 
 COARSE = 8.0  # samples a period: of faster modes the samples may show another one
 SAME = 0.01  # of a frequency: closer ones are one
 MAIN = 0.8  # of the static response: a mode that carries as much is the main one
-
-Values = dict[str, float]
-
-
-class Mode(NamedTuple):
-    """A mode: its axis, natural frequency and damping ratio, and its number among those of its block, from `_1`, empty
-    where that has one."""
-
-    axis: int
-    frequency: float
-    damping: float
-    number: str = ""
 
 
 def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> Values:
@@ -60,23 +47,15 @@ def mechanics_without_payload(fit: Fit, kept: Collection[str] = ()) -> Values:
 
 def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode]:
     """The second modes that carry MAIN of the response or more, but for those with a parameter that is kept."""
-    for share, mode in second_modes(fit, values):
+    for share, mode in second_modes(fit.problem.model, values):
         if share.name in fit.values and share.name not in kept and values[share.name] > MAIN * (1 - EDGE):
             yield mode
-
-
-def second_modes(fit: Fit, values: Values) -> Iterator[tuple[Entry, Mode]]:
-    """The second modes, each with the parameter that is its share."""
-    for entry in fit.problem.model.entries:
-        block = entry.name.removesuffix("share")
-        if entry.word == "share" and f"{block}frequency" in values:
-            yield entry, Mode(entry.axis, values[f"{block}frequency"], values[f"{block}damping"])
 
 
 def mechanics_at_second_mode(fit: Fit, given: Fit) -> tuple[tuple[str, ...], Values]:
     """The effects of a fit without its second modes, and the parameters that the oscillator of another fit has there;
     none where there is no second mode."""
-    modes, values = [*second_modes(fit, values_of(fit))], values_of(given)
+    modes, values = [*second_modes(fit.problem.model, values_of(fit))], values_of(given)
     words = {share.block.name for share, _ in modes}
     moved = [oscillator_at(given, values, mode) for _, mode in modes]
     return tuple(item for item in fit.effects if word_of(item) not in words), dict(ChainMap(*moved))
@@ -86,15 +65,19 @@ def with_aliases(fit: Fit) -> list[Values]:
     """The parameters of a fit with one mode of its mechanics at another frequency of which the samples look alike: it
     may rest at any of these."""
     values = values_of(fit)
-    return [point for mode in modes_of(fit, values) for point in moved_to(fit, values, mode, aliases(fit, mode))]
+    return [
+        point
+        for mode in modes_of(fit.problem.model, values)
+        for point in moved_to(fit, values, mode, aliases(fit, mode))
+    ]
 
 
 def with_modes_at_second(fit: Fit, kept: Collection[str]) -> list[Values]:
     """The parameters of a fit with one mode of its mechanics where a second mode is that is not kept, or at a frequency
     of which the samples look alike: the second mode may be that one, which rests elsewhere."""
     values, found = values_of(fit), list[Values]()
-    for share, second in second_modes(fit, values):
-        for mode in modes_of(fit, values) if share.name not in kept else ():
+    for share, second in second_modes(fit.problem.model, values):
+        for mode in modes_of(fit.problem.model, values) if share.name not in kept else ():
             moved = mode._replace(damping=second.damping)
             found += moved_to(fit, values, moved, [second.frequency, *aliases(fit, second)])
     return found
@@ -104,9 +87,9 @@ def with_modes_exchanged(fit: Fit) -> list[Fit]:
     """The fits with the main mode of an axis and a second one exchanged, where bounds allow it. The response is the
     same where they are in parallel; in another form of the second mode only one of the two may be it."""
     values, found = values_of(fit), list[Fit]()
-    for share, second in second_modes(fit, values):
+    for share, second in second_modes(fit.problem.model, values):
         block = share.name.removesuffix("share")
-        for main in modes_of(fit, values):
+        for main in modes_of(fit.problem.model, values):
             moved = mode_at(fit, values, main._replace(frequency=second.frequency, damping=second.damping))
             of_second = {"share": 1 - values[share.name], "frequency": main.frequency, "damping": main.damping}
             point = fit.values | moved | {f"{block}{word}": value for word, value in of_second.items()}
@@ -128,21 +111,6 @@ def moved_to(fit: Fit, values: Values, mode: Mode, frequencies: Iterable[float])
     """The parameters of a fit with a mode at each of some frequencies, of those that its bounds allow."""
     moved = (mode_at(fit, values, mode._replace(frequency=frequency)) for frequency in frequencies)
     return [fit.values | point for point in moved if point and is_within(fit, point)]
-
-
-def modes_of(fit: Fit, values: Values) -> list[Mode]:
-    """Those of the mechanics; of several modes that each axis has once only."""
-    modes = list[Mode]()
-    for entry in fit.problem.model.entries:
-        block = entry.name.removesuffix(entry.word)
-        if entry.word == "mass" and hasattr(entry.block, "at_mode"):
-            mass, damping, stiffness = (values[f"{block}{word}"] for word in ("mass", "damping", "stiffness"))
-            pace = np.sqrt(stiffness / mass)
-            modes.append(Mode(entry.axis, float(pace / (2 * np.pi)), float(damping / (2 * mass * pace))))
-        elif issubclass(entry.block, Modes) and entry.word.startswith("frequency"):
-            number = entry.word.removeprefix("frequency")
-            modes.append(Mode(entry.axis, values[entry.name], values[f"{block}damping{number}"], number))
-    return modes
 
 
 def mode_at(fit: Fit, values: Values, mode: Mode) -> Values:

@@ -14,12 +14,12 @@ from pzt_ident.diagnosis.misfit import squared_misfit
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import FAR
-from pzt_ident.search.halving import change_by_halving
+from pzt_ident.search.finer_steps import change_in_finer_steps, finer_steps
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
-STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
+STEP_FAULT = 0.6  # of the misfit: where finer steps of the simulation change more, the step is to blame
 STEP_TOLERANCE = 0.05  # of the noise, or twice as much of the misfit: a step is halved where that changes more
 FINEST = 8  # steps per sample
 AT_NOISE = 1.05  # noise floors: what leaves no more is fitted from no other guess
@@ -167,12 +167,12 @@ def _best_of_axes(
 
 
 def residuals_differ(case: Case, one: Array, other: Array) -> bool:
-    """Whether two residuals differ by more than halving the simulation's step may change."""
+    """Whether two residuals differ by more than finer steps of the simulation may change."""
     return bool(np.linalg.norm(one - other) > STEP_TOLERANCE * case.floor)
 
 
 def refine_steps(case: Case, fit: Fit, rival: float = np.inf, checked: Sequence[int] | None = None) -> Fit:
-    """The fit, continued with finer simulation steps for the records where halving the step changes the response by
+    """The fit, continued with finer simulation steps for the records where these change the response by
     more than a part of the misfit, or of the noise. checked: the numbers of the records in question, by default of all.
     None is refined behind the end of the budget, nor where the fit stays far above a rival whatever finer steps change.
 
@@ -194,19 +194,20 @@ def refine_steps(case: Case, fit: Fit, rival: float = np.inf, checked: Sequence[
 
 
 def change_if_too_coarse(case: Case, fit: Fit) -> float:
-    """The change of the response when the simulation step is halved, root mean square, in units of the loss, where that
+    """The change of the response in finer steps of the simulation, root mean square, in units of the loss, where that
     is so much of the misfit that the step is to blame; 0 elsewhere."""
     change = float(np.sqrt(np.mean(np.square(step_errors(case, fit)))))
     return change if change > STEP_FAULT * squared_misfit(fit.identify, case.floor) ** 0.5 else 0.0
 
 
 def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> Array:
-    """Change of the response of records, by default of all, when the simulation step is halved, root mean square, in
+    """Change of the response of records, by default of all, in finer steps of the simulation, root mean square, in
     units of the loss: (records,)."""
     problem, theta = fit.problem, fit.problem.parameters(fit.point)
     errors = []
     for number in range(len(problem.records)) if numbers is None else numbers:
         record = problem.records[number]
-        change = change_by_halving(problem, record, case.record_with_steps(number, 2 * record.steps), theta)
+        finer = case.record_with_steps(number, finer_steps(problem, record, theta))
+        change = change_in_finer_steps(problem, record, finer, theta)
         errors.append(np.sqrt(np.mean(np.square(change / problem.sizes))))
     return np.array(errors)

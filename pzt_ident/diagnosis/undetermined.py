@@ -10,12 +10,13 @@ import numpy as np
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.modes import Mode, modes_of, values_of
+from pzt_ident.diagnosis.modes import values_of
 from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.block import Place
 from pzt_ident.model.chain import Entry
+from pzt_ident.model.modes import Mode, modes_of
 from pzt_ident.model.registry import blocks, word_of
 
 SURE = 0.1  # of the search range: a direction of parameters with a smaller standard error is determined
@@ -97,7 +98,7 @@ def mode_that_is_silent(fit: Fit) -> Mode | None:
     """The least damped mode of the mechanics where all of their parameters are free and none of their modes rings in
     any record: each is damped more than any mode of a stage, or above half of all sampling rates. None elsewhere."""
     most, rate = blocks[MODE].parameters()["damping"].bounds[1], max(1 / record.dt for record in fit.problem.records)
-    modes = modes_of(fit, values_of(fit))
+    modes = modes_of(fit.problem.model, values_of(fit))
     free = mechanics_of(fit).keys() <= {*fit.problem.free}
     if not free or any(mode.damping <= most and 2 * mode.frequency < rate for mode in modes):
         return None

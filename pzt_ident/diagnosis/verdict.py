@@ -229,7 +229,7 @@ def refusal(case: Case, first: Fit, fit: Fit) -> str:
         return ""
     return (
         f"The remaining error, an RMSE of {fit.identify / case.floor:.1f} noise floors, may come from the simulation:"
-        f" halving its step changes the response by {change / case.floor:.1f} noise floors. Sample faster, or drive"
+        f" finer steps change the response by {change / case.floor:.1f} noise floors. Sample faster, or drive"
         " more slowly."
     )
 

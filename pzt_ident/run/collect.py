@@ -22,12 +22,12 @@ from pzt_ident.run.misfit import write_misfits
 from pzt_ident.run.start import START
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, read_result
-from pzt_ident.search.halving import change_by_halving
+from pzt_ident.search.finer_steps import change_in_finer_steps, finer_steps
 from pzt_ident.search.league import rank
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import judged
 
-MOST_OF_THE_NOISE = 0.2  # that half the step of a simulation may change, before it is said
+MOST_OF_THE_NOISE = 0.2  # that finer steps of a simulation may change, before it is said
 
 
 def collect(
@@ -72,7 +72,8 @@ def collect(
 def facts_of(record: Record, problem: Problem, point: np.ndarray, floors: Sequence[float]) -> dict[str, Any]:
     """What is to be known of a record, and what the model leaves of it. floors: noise of each measured axis, SI."""
     theta = problem.parameters(point)
-    changes = change_by_halving(problem, record, replace(record, steps=2 * record.steps), theta)
+    finer = replace(record, steps=finer_steps(problem, record, theta))
+    changes = change_in_finer_steps(problem, record, finer, theta)
     change = float(np.max(changes / np.array(floors))) if np.min(floors) > 0 else 0.0
     return {
         **errors_in(record, problem, point),
@@ -88,10 +89,10 @@ def facts_of(record: Record, problem: Problem, point: np.ndarray, floors: Sequen
 
 
 def coarse(record: Record, change: float) -> Iterator[str]:
-    """The note on a simulation whose step costs much of the noise. change: of the response in half steps, in floors."""
+    """The note on a simulation whose step costs much of the noise. change: in finer steps, in floors."""
     if change > MOST_OF_THE_NOISE:
         how = f"give the record `steps: {4 * record.steps}`"
-        yield f"half the step of the simulation changes the response by {change:.2g} noise floors: {how}"
+        yield f"finer steps of the simulation change the response by {change:.2g} noise floors: {how}"
 
 
 def errors_in(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:

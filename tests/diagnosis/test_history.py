@@ -171,7 +171,7 @@ def test_a_job_that_follows_what_was_before_is_followed():
 def test_a_path_that_is_refused_with_what_was_before_leaves_that_from_rest(monkeypatch):
     case = stage.considering(begun_in_motion("quadratic_gain"), "quadratic_gain")
     first = first_fit(case, 0)
-    refused = Staircase([Step(first)], Diagnosis("refused", "halving the step", first, [], []))
+    refused = Staircase([Step(first)], Diagnosis("refused", "finer steps", first, [], []))
     monkeypatch.setattr(staircase, "improve_aged", lambda *arguments: refused)
     found = improve(case, first)
     assert found is not refused and found.last.verdict != "refused"

@@ -168,7 +168,7 @@ class Coarse(Block):
         return x, x
 
 
-def test_halving_the_step_changes_nothing_of_what_is_exact(plain):
+def test_a_finer_step_changes_nothing_of_what_is_exact(plain):
     fit = first_fit(plain, 0)
     assert refit.step_errors(plain, fit).max() < 1e-9 * plain.floor
     assert fit.steps == (1, 1)
