@@ -173,30 +173,33 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     for some in (candidates[:1], candidates[1:]):
         for candidate in side_by_side(refitted, filter(allowed, some)):
             if candidate is candidates[0]:
-                refit_further(case, first, before, candidate)
+                refit_likely_forms(case, first, before, candidate)
             made.append(candidate)
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
-    if before is first:
-        refit_closest_further(case, first, candidates[:1], made)
+    if before is first and made:
+        refit_astray(case, first, made)
     return made
 
 
-def refit_closest_further(case: Case, first: Fit, done: Sequence[Candidate], candidates: Sequence[Candidate]) -> None:
-    """Refit the candidate that is closest to the records which are fitted further, if it drives the model onto bounds
-    and that is not done."""
-    closest = min(candidates, key=lambda candidate: candidate.closest.identify, default=None)
-    if closest and all(closest is not item for item in done) and drives_onto_bounds(case, first, closest):
-        refit_further(case, first, first, closest)
-
-
-def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
-    """Refit the best candidate in its other likely forms; from random points where it and the model as given rest on
-    bounds far from the noise, or where it drives the model onto bounds, unless another effect promises most of what it
-    leaves; of the former no memory, which may be that of the model as given."""
-    refit_likely_forms(case, first, before, candidate)
-    if before is not first:
+def refit_astray(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
+    """Refit the candidate that scores best from random points, and in its likely forms the one that is closest to the
+    records which are fitted, where they drive the model onto bounds; not where an effect of no more parameters is
+    adequate."""
+    best, closest = candidates[0], min(candidates, key=lambda candidate: candidate.closest.identify)
+    fits = [fit for candidate in candidates for fit in candidate.refits.values() if adequate(case, first, fit)]
+    if any(fit.freedom <= best.best.freedom for fit in fits):
         return
+    refit_from_random_points(case, first, best)
+    if closest is not best and drives_onto_bounds(case, first, closest):
+        refit_likely_forms(case, first, first, closest)
+        refit_from_random_points(case, first, closest)
+
+
+def refit_from_random_points(case: Case, first: Fit, candidate: Candidate) -> None:
+    """Refit a candidate from random points where it and the model as given rest on bounds far from the noise, or where
+    it drives the model onto bounds, unless another effect promises most of what it leaves; of the former no memory,
+    which may be that of the model as given."""
     resting = rests_on_bounds(case, first, candidate.best)
     if not resting and not drives_onto_bounds(case, first, candidate):
         return
