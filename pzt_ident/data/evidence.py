@@ -21,6 +21,7 @@ SHAPED = 64  # samples: of shorter periods the changes of their shape would take
 FARTHEST = 4.0  # standard deviations of an estimate, by which it may be above the quieter ones of the same noise
 AS_LOUD = 1.25  # times those: the noise of a sensor may be as much larger elsewhere in its range
 FEWEST = 0.05  # of all that is measured: less, which is quieter than the rest, may be a reading that hung
+LONG, SHORT = 100, 24  # samples of a rest in which lines are told from noise, and of those that count together
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 
@@ -78,28 +79,31 @@ def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDAr
     return order
 
 
-def rest_noise(drive: Array, response: Array, least: int = 100) -> list[Estimate]:
+def rest_noise(drive: Array, response: Array) -> list[Estimate]:
     """The noise of each rest: of the last four fifths of an interval of constant drive, or of less where these still
-    settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
+    settle, less a quartic, which follows creep, and the lines of the mains and the floor. Of short rests that have
+    any."""
     estimates = []
     for first, last in rests(drive):
         first += (last - first) // 5
-        if last - first >= least:
-            noise, basis = settled(response[first:last], least)
+        if last - first >= SHORT:
+            noise, basis = settled(response[first:last])
             memory = memory_in(noise, basis)
-            if memory < MOST_MEMORY:  # what rings or settles is more alike from sample to sample
+            if memory < MOST_MEMORY and (
+                last - first >= LONG or noise.any()
+            ):  # what rings or settles is more alike from sample to sample
                 free = 2 * (noise.size - basis.shape[1]) * (1 - memory**2) / (1 + memory**2)
                 estimates.append(Estimate(deviation(noise, basis), noise.size, free**-0.5))
     return estimates
 
 
-def settled(signal: Array, least: int) -> tuple[Array, Array]:
+def settled(signal: Array) -> tuple[Array, Array]:
     """A signal less a quartic and lines, and their basis: of its later half, and so on, while the earlier one has DECAY
     times its variance."""
     noise, basis = without_lines(signal, 4)
     half = noise.size // 2
-    if half >= least and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
-        return settled(signal[half:], least)
+    if half >= LONG and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
+        return settled(signal[half:])
     return noise, basis
 
 

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.decimals import last_decimal
-from pzt_ident.data.evidence import alike, mean_deviation, of_one_noise, period_noise, quiet_deviation, rest_noise
+from pzt_ident.data.evidence import (
+    LONG,
+    Estimate,
+    alike,
+    mean_deviation,
+    of_one_noise,
+    period_noise,
+    quiet_deviation,
+    rest_noise,
+)
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
 from pzt_ident.data.record import Record
@@ -56,7 +66,7 @@ def evident_floor(records: list[Record], axis: int) -> Floor:
     if repeats and still and repeats.value > CHANGED * still.value:
         times = repeats.value / still.value
         return Floor(still.value, f"{still.source}; repeated records differ {times:.2g} times as much")
-    return repeats or still or min(floor_of_two_periods(signals, step), floor_in_windows(signals, step))
+    return repeats or still or floor_in_motion(signals, step)
 
 
 def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | None:
@@ -70,22 +80,42 @@ def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | N
 
 
 def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
-    """By rests, else by repeated periods, or in windows where steps of the readings are too coarse for a rest to tell;
-    None where there are neither."""
-    for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
-        found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
-        if found:
-            scatters, seconds, spreads = np.array(
-                [(part.value, part.samples * dt, part.spread) for part, dt in found]
-            ).T
-            values = errors_of_readings(scatters, seconds, step)
-            kept = of_one_noise(values, seconds, spreads)
-            still = floor_of(mean_deviation(values[kept], seconds[kept]), source, step)
-            if step > COARSE * still.value:
-                moving = floor_in_windows(signals, step)
-                return moving if moving.value < LIKE * still.value else still
-            return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
-    return None
+    """By rests; where all of them are short, so that they may hold lines, by what is quieter of these and the stage in
+    motion. None where there are fewer than LONG samples of them."""
+    found = estimates(signals, rest_noise)
+    longest = max((part.samples for part, _ in found), default=0)
+    if sum(part.samples for part, _ in found) < LONG:
+        return None
+    still = floor_by(found, "rest segments", signals, step)
+    return still if longest >= LONG else min(still, floor_in_motion(signals, step))
+
+
+def floor_in_motion(signals: list[Signal], step: float) -> Floor:
+    """By repeated periods, else by two of them or in short windows."""
+    found = estimates(signals, period_noise)
+    if found:
+        return floor_by(found, "repeated periods", signals, step)
+    return min(floor_of_two_periods(signals, step), floor_in_windows(signals, step))
+
+
+def estimates(
+    signals: list[Signal], estimate: Callable[[Array, Array], list[Estimate]]
+) -> list[tuple[Estimate, float]]:
+    """Those of all records, each with its sample time."""
+    return [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
+
+
+def floor_by(found: list[tuple[Estimate, float]], source: str, signals: list[Signal], step: float) -> Floor:
+    """The floor by estimates, or in windows where steps of the readings are too coarse for a rest to tell, or the
+    estimates are not alike."""
+    scatters, seconds, spreads = np.array([(part.value, part.samples * dt, part.spread) for part, dt in found]).T
+    values = errors_of_readings(scatters, seconds, step)
+    kept = of_one_noise(values, seconds, spreads)
+    still = floor_of(mean_deviation(values[kept], seconds[kept]), source, step)
+    if step > COARSE * still.value:
+        moving = floor_in_windows(signals, step)
+        return moving if moving.value < LIKE * still.value else still
+    return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
 
 
 def floor_of_two_periods(signals: list[Signal], step: float) -> Floor:

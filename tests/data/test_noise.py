@@ -231,10 +231,45 @@ def test_the_start_of_a_rest_is_left_to_settle():
     assert noise_floor([record(drive, response)], 0).value == pytest.approx(1, rel=0.1)
 
 
-@pytest.mark.parametrize(("samples", "rests"), [(124, 0), (125, 1)])
-def test_a_rest_has_a_hundred_steps_after_its_first_fifth(samples, rests):
+@pytest.mark.parametrize(("samples", "rests"), [(29, 0), (30, 1)])
+def test_a_rest_has_a_least_number_of_steps_after_its_first_fifth(samples, rests):
     drive = np.concatenate([rising(300), np.full(samples - 1, 100.0), 100 - rising(300)[1:]])
     assert len(rest_noise(drive[None], white(drive.size))) == rests
+
+
+def beginning_at_rest(still, records=9, hum=0.0, behind=0.0):
+    """Records of white noise that rest ahead of a rise, for so many samples, and ring behind it. hum: its size;
+    behind: how far the drive goes on behind the rise."""
+    made = []
+    for seed in range(records):
+        drive = (1 + seed / 9) * np.concatenate([np.zeros(still), rising(400), 100 + np.linspace(0, behind, 300)])
+        ringing = np.append(np.zeros(still + 400), 200 * np.exp(-np.arange(300) / 900) * np.sin(np.arange(300) / 2))
+        tone = hum * np.sin(np.arange(drive.size) / 1.8 + seed)
+        made.append(record(drive, drive + ringing + tone + white(drive.size, seed=seed)))
+    return made
+
+
+@pytest.mark.parametrize("behind", [0.0, 3.0])
+def test_short_rests_count_together_whatever_is_behind(behind):
+    """A long rest in which the stage rings, or none."""
+    floor = noise_floor(beginning_at_rest(40, behind=behind), 0)
+    assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
+
+
+@pytest.mark.parametrize(("still", "records"), [(40, 3), (20, 20)])
+def test_short_rests_are_no_evidence_below_a_hundred_samples(still, records):
+    assert noise_floor(beginning_at_rest(still, records, behind=3.0), 0).source != "rest segments"
+
+
+def test_a_hum_that_short_rests_do_not_tell_from_noise_is_told_in_windows():
+    assert noise_floor(beginning_at_rest(60, hum=30.0, behind=3.0), 0).source != "rest segments"
+
+
+def test_a_short_rest_in_which_the_reading_hangs_is_no_evidence():
+    made = beginning_at_rest(40)
+    for one in made:
+        one.response[:, :41] = 0
+    assert noise_floor(made, 0).value > 0.5
 
 
 def test_records_measured_again_with_a_hum_give_the_noise():
