@@ -44,3 +44,12 @@ def test_paths_in_the_readme_exist():
     text = README.read_text(encoding="utf-8")
     for path in re.findall(r"\]\(([\w/.]+)\)", text) + re.findall(r"`((?:configs|experiments|results)/[\w/.]+)`", text):
         assert (README.parent / path).exists(), path
+
+
+def test_each_decision_is_told_in_short_and_in_full():
+    short, full = README.read_text(encoding="utf-8"), README.parent / "experiments/decisions.md"
+    table = short[short.index("## Decisions") :]
+    names = [
+        [line.split(" | ")[0] for line in text.splitlines() if line[:2] == "| "] for text in (table, full.read_text())
+    ]
+    assert names[0] == names[1] and len(names[0]) > 100

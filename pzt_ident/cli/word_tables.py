@@ -76,6 +76,7 @@ def _meaning(row: Facts) -> str:
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds or another value."
     effect = "" if row["effect"] is None else f" With {_needed(row['effect'])} only."
     per_record = " Each record has its own." if row["per_record"] else ""
+    per_record += " Of every axis but the first." if row["per_later_axis"] else ""
     apart = f" Wide bounds of `{row['adds_to']}` or of the rest of its block hide it: fix what is known."
     return row["doc"] + fixed + effect + per_record + _with_form(row) + (apart if row["adds_to"] else "")
 

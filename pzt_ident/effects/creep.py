@@ -36,7 +36,7 @@ class Creep(Creeping, Bank):
 
     Croft, Shed & Devasia (2001), J. Dyn. Syst. Meas. Control 123, 35. The time constants are spaced evenly on a
     logarithmic scale over `decades` around tau: a single Kelvin-Voigt element for 0 decades, nearly a logarithm of time
-    for many.
+    for many. Each of the ten elements has a tenth of `ratio`.
     """
 
     place = Place.CREEP

@@ -16,6 +16,7 @@ from pzt_ident.job.document import Document, Loc
 from pzt_ident.job.parameter_checks import Earlier, check_parameters
 from pzt_ident.job.plugins import plug
 from pzt_ident.model.contract import check_loaded
+from pzt_ident.model.description import meant
 from pzt_ident.model.registry import blocks, optimizers, word_of
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
         word, loc = word_of(item), document.reach(("model", i, "name"))
         if word not in blocks:
             operators = [word for word in blocks.usable() if not blocks.is_effect(word)]
-            document.fault(loc, f"unknown block {word!r}", nearest(word, operators))
+            document.fault(loc, f"unknown block {word!r}", meant(word, operators))
             continue
         folder = blocks.folder(word)
         if blocks.is_effect(word):
@@ -211,8 +212,10 @@ def _effects(document: Document, items: tuple[str, ...], earlier: Earlier) -> No
             and not any(block.holds(effect) for block in hosts)
         ):
             owners = [block.name for block in blocks if block.holds(effect)]
+            others = [f"`{item}`" for item in blocks.forms(word) if not _is_kind(blocks[item], "Term")]
             message = f"no block of this model has a term for {items[i]!r}"
-            document.fault(loc, message, f"put one of these into `model`: {', '.join(owners)}")
+            instead = f", or write {' or '.join(others)} here" if others else ""
+            document.fault(loc, message, f"put one of these into `model`: {', '.join(owners)}{instead}")
         elif effect and "channels" in earlier and len(earlier["channels"].axes) < 2 and _is_kind(effect, "Coupling"):
             document.fault(loc, f"{word!r} needs a second axis", "give the other axis, at least its `drive`")
 

@@ -84,12 +84,12 @@ class Document:
 
     def keys(self, loc: Loc) -> list[str]:
         """Those of the mapping at a place, as written."""
-        node = [self._root, *(value for _, value in self._path(loc))][-1]
+        node = self._node(loc)
         return [key.value for key, _ in node.value if key.id == "scalar"] if node.id == "mapping" else []
 
     def source(self, loc: Loc) -> str:
         """The text at a place, as written, shortened."""
-        node = [self._root, *(value for _, value in self._path(loc))][-1]
+        node = self._node(loc)
         text = (
             node.value
             if isinstance(node.value, str)
@@ -99,6 +99,14 @@ class Document:
         )
         text = "nothing" if _kind(node) == "null" else repr(text) if _kind(node) == "str" else text
         return text if len(text) <= 60 else text[:57] + "..."
+
+    def kind(self, loc: Loc) -> str:
+        """What is at a place: map, seq, str, int, float, bool or null."""
+        return _kind(self._node(loc))
+
+    def _node(self, loc: Loc) -> Any:
+        """The value node at a place, or at the nearest place above it."""
+        return [self._root, *(value for _, value in self._path(loc))][-1]
 
     def _path(self, loc: Loc) -> list[tuple[Any, Any]]:
         """Key node (None in a list) and value node of every step down, as far as it goes."""

@@ -60,8 +60,11 @@ def _setting(document: Document, loc: Loc, setting: Setting) -> None:
         return
     low, high = setting.bounds
     if low >= high:
-        message = f"bounds reversed, {low:g} is not below {high:g}"
-        document.fault((*loc, "bounds"), message, "write [low, high], or fix it with `value`")
+        if low == high:
+            document.fault((*loc, "bounds"), f"both bounds are {low:g}", f"fix it with `value: {low:g}`")
+        else:
+            message = f"bounds reversed, {low:g} is not below {high:g}"
+            document.fault((*loc, "bounds"), message, "write [low, high], the lower first")
     if setting.value is not None:
         document.fault((*loc, "value"), "beside `bounds`", "keep one: bounds free a parameter, a value fixes it")
 
@@ -92,7 +95,7 @@ def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapp
             fault = "is solved for in every record by itself", "take it out"
         elif declared.per == "stage":
             fault = "belongs to the whole stage, not to an axis", f"write {block}.{word}"
-        elif declared.per == "later axis":
+        elif declared.per_later_axis:
             fault = "is relative to that of the first axis, which has none", "take it out"
     else:
         similar = [known for known in entries if f"{block}." in known and known.count(".") == name.count(".")]

@@ -217,7 +217,7 @@ _EXPECTED = {
     "literal_error": ("{expected}", "write {expected}"),
     "tuple_type": ("a list", "write it as [first, second]"),
     "dict_type": ("a mapping", "write it as {{key: value}}"),
-    "dataclass_type": ("a mapping", "write it as {{key: value}}"),
+    "dataclass_type": ("a mapping", ""),
     "greater_than": ("above {gt:g}", "give a value above {gt:g}"),
     "greater_than_equal": ("at least {ge:g}", "give at least {ge:g}"),
     "less_than_equal": ("at most {le:g}", "give at most {le:g}"),
@@ -245,7 +245,7 @@ def _add_faults(document: Document, error: ValidationError) -> None:
         else:
             expected, remedy = _EXPECTED.get(kind, (item["msg"], "see `pzt-ident init` for an example"))
             facts = item.get("ctx", {})
-            remedy = remedy.format(**facts) + (_choice_of_keys(loc) if kind == "dataclass_type" else "")
+            remedy = _as_it_is_meant(document, loc, kind) or remedy.format(**facts)
             wrong.setdefault(document.reach(loc), []).append((expected.format(**facts), remedy))
     for loc, alternatives in wrong.items():
         expected, remedy = (" or ".join(dict.fromkeys(column)) for column in zip(*alternatives, strict=True))
@@ -287,6 +287,16 @@ def _known_keys(loc: Loc) -> list[str]:
         if "$ref" in node:
             node = definitions[node["$ref"].rpartition("/")[2]]
     return list(node["properties"])
+
+
+def _as_it_is_meant(document: Document, loc: Loc, kind: str) -> str:
+    """What to write for a number that is a parameter's, a mapping in the place of a list, or anything in that of a
+    mapping; empty for other kinds of error."""
+    number = loc[0] == "parameters" and len(loc) == 2 and document.kind(loc) in ("int", "float")
+    if kind == "dataclass_type":
+        some = f"{{value: {document.source(loc)}}}" if number else "{key: value}"
+        return f"write it as {some}{_choice_of_keys(loc)}"
+    return "put it in brackets, [{...}]" if kind == "tuple_type" and document.kind(loc) == "map" else ""
 
 
 def _choice_of_keys(loc: Loc) -> str:

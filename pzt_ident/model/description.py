@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
+from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -68,13 +69,31 @@ def summary(item: type) -> str:
 
 
 def is_word(name: str) -> bool:
-    """Whether a name is that of a block, effect or optimizer."""
+    """Whether a name is that of a block, effect, optimizer or parameter."""
     return word_of(name) in blocks or name in optimizers or name in _terms()
 
 
+def meant(name: str, known: Iterable[str]) -> str:
+    """A remedy for an unknown word: the few parameters of this name, the few blocks that speak of it, or the nearest
+    known words."""
+    whole = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
+    declared = {block.name: _variants(block).values() for block in blocks}
+    owners = [word for word, forms in declared.items() if any(name in parameters for parameters in forms)]
+    spoken = [word for word in blocks.words() if whole.search(inspect.getdoc(blocks[word]) or "")]
+    if 0 < len(owners) <= FEW:
+        return f"did you mean {' or '.join(f'{word}.{name}' for word in owners)}?"
+    if 0 < len(spoken) <= FEW:
+        return f"{listed(spoken)} {'speaks' if len(spoken) == 1 else 'speak'} of it"
+    return nearest(name, known)
+
+
 def description_of(name: str) -> Facts:
-    """What a block, effect or optimizer declares. Raises InputError for an unknown one, with the words that speak of it
-    or else the nearest ones."""
+    """What a block, effect, optimizer or parameter declares. Raises InputError for an unknown one, with what may be
+    meant."""
+    word, _, last = name.rpartition(".")
+    if word in blocks and last in {row["name"] for row in _parameters(blocks[word])}:
+        rows = [row for row in _parameters(blocks[word]) if row["name"] == last]
+        return {"name": name, "kind": "parameter", "doc": headline(blocks[word]), "parameters": rows}
     if word_of(name) in blocks:
         return _block(name)
     if name in optimizers:
@@ -82,12 +101,7 @@ def description_of(name: str) -> Facts:
     terms = _terms()
     if name in terms:
         return {"name": name, "kind": "effect", "doc": terms[name], "parameters": _parameters_of_effect(name)}
-    every = [*blocks.words(), *optimizers.words(), *terms]
-    whole = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
-    spoken = [word for word in blocks.words() if whole.search(inspect.getdoc(blocks[word]) or "")]
-    verb = "speaks" if len(spoken) == 1 else "speak"
-    remedy = f"{listed(spoken)} {verb} of it" if 0 < len(spoken) <= FEW else nearest(name, every)
-    raise InputError(f"unknown word {name!r}", remedy=remedy)
+    raise InputError(f"unknown word {name!r}", remedy=meant(name, [*blocks.words(), *optimizers.words(), *terms]))
 
 
 def _parameters_of_effect(effect: str) -> list[Facts]:
@@ -160,7 +174,7 @@ def _choice(block: type[Any], word: str, value: str) -> str:
 def _parameters(block: type[Any]) -> list[Facts]:
     """The parameters of a block in all its forms, or in the form that was chosen; one that forms declare differently
     has a row for each declaration."""
-    keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "adds_to", "doc")
+    keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_later_axis", "per_record", "adds_to", "doc")
     variants = _variants(block)
     owners: dict[tuple[Any, ...], list[str]] = {}
     for label, found in variants.items():

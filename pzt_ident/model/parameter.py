@@ -58,6 +58,11 @@ class Parameter:
     def __set_name__(self, owner: type, name: str) -> None:
         object.__setattr__(self, "name", name)
 
+    @property
+    def per_later_axis(self) -> bool:
+        """Whether every axis but the first has one."""
+        return self.per == "later axis"
+
     def ends_at(self, value: float, bound: Literal["lower", "upper"]) -> bool:
         """Whether a value, on a bound, is the null, or where the range ends of itself: one that rests there rests on no
         bound."""

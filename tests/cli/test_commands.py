@@ -335,6 +335,7 @@ class TestWords:
             "value": None,
             "scale": "linear",
             "effect": None,
+            "per_later_axis": False,
             "per_record": False,
             "adds_to": None,
             "doc": "",

@@ -196,8 +196,10 @@ ONE_FAULT = [
     ("[bouc_wen, lumped]", "bouc_wen", "10:8: model: 'bouc_wen' is not a list", "[first, second]"),
     ('{drive: "u_y [V]"}', "5", "channels.axes.y: 5 is not a mapping", "with some of drive, response"),
     ("{name: fake, population: 40, pull: 1.5}", "5", "optimizers[0]: 5 is not a mapping", "some of name, its settings"),
-    ("{value: 0.1566}", "0.1566", "x.lumped.mass: 0.1566 is not a mapping", "{key: value} with some of bounds, value"),
+    ("{value: 0.1566}", "0.1566", "x.lumped.mass: 0.1566 is not a mapping", "write it as {value: 0.1566}"),
     ("x.lumped.mass: {value: 0.1566}", "lumped.mass: {x: {value: 1}}", "unknown key 'x'", "is `x.lumped.mass`"),
+    ("[bouc_wen, lumped]", "[preisach]", "10:9: model[0]: unknown block 'preisach'", "homogenized_energy speaks of it"),
+    ("[1e-6, 1]", "[1, 1]", "13:28: parameters.bouc_wen.alpha.bounds: both bounds are 1", "`value: 1`"),
     ("lumped]", "{name: lumpd}]", "10:26: model[1].name: unknown block 'lumpd'", "did you mean 'lumped'"),
     ("lumped]", "{name: lumped, size: 3}]", "10:34: model[1].size: unknown setting 'size'", "write just `lumped`"),
     ("lumped]", "{size: 3}]", "10:19: model[1]: missing key 'name'", "add `name: ...`"),
@@ -331,6 +333,13 @@ def test_a_term_needs_its_block():
     message = faults(GOOD.replace("[cross_coupling]", "[load_mass]").replace("lumped]", "bouc_wen_oscillator]"))
     assert "11:11: effects[0]: no block of this model has a term for 'load_mass'\n" in message
     assert "put one of these into `model`: lumped" in message
+    message = faults(GOOD.replace("[cross_coupling]", "[cubic_stiffness]").replace("lumped]", "rod]"))
+    assert "put one of these into `model`: lumped, or write `cubic_stiffness.rest` here" in message
+
+
+def test_a_mapping_in_the_place_of_a_list_is_put_in_brackets():
+    message = faults(GOOD.replace("  - {name: fake, population: 40, pull: 1.5}", "  {name: fake, population: 40}"))
+    assert "optimizers: a mapping is not a list\n  put it in brackets, [{...}]" in message
 
 
 def test_a_parameter_of_a_term_needs_its_effect():

@@ -2,6 +2,7 @@
 
 import pytest
 
+from pzt_ident.errors import InputError
 from pzt_ident.model.block import Term
 from pzt_ident.model.description import description_of
 from pzt_ident.model.registry import blocks
@@ -18,6 +19,29 @@ def test_each_form_is_told_with_its_own_bounds_and_value(item):
         ]
         told = [(row["bounds"], row["value"], row["doc"]) for row in of_form]
         assert told == [(declared.bounds, declared.value, declared.doc)]
+
+
+def test_each_parameter_is_told_by_its_name_in_a_job():
+    for block in blocks:
+        for name in block.parameters():
+            found = description_of(f"{block.name}.{name}")
+            assert {row["name"] for row in found["parameters"]} == {name}, (block.name, name)
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("payload", "did you mean 'load_mass'?"),
+        ("mass", "did you mean bouc_wen_oscillator.mass or lumped.mass?"),
+        ("preisach", "homogenized_energy speaks of it"),
+        ("hysterisis", "known: "),
+        ("fricton", "did you mean 'friction' or 'drift'?"),
+    ],
+)
+def test_an_unknown_word_leads_to_what_may_be_meant(name, remedy):
+    with pytest.raises(InputError, match=f"unknown word {name!r}") as raised:
+        description_of(name)
+    assert remedy in raised.value.remedy
 
 
 def test_look_alikes_are_told_by_both():
