@@ -10,8 +10,10 @@ from pzt_ident.model.block import Bank, Place, erf
 from pzt_ident.model.parameter import Form, Parameter, Setting
 from pzt_ident.model.registry import blocks
 
-NODES = 64
-QUANTILES = tuple(NormalDist().inv_cdf((i + 0.5) / NODES) for i in range(NODES))
+NODES, WIDER = 64, 1.5  # coercive fields; times the spread of the density, over which they are placed
+PLACES = tuple(WIDER * NormalDist().inv_cdf((i + 0.5) / NODES) for i in range(NODES))
+DENSITIES = [NormalDist().pdf(z) / NormalDist(0, WIDER).pdf(z) for z in PLACES]
+SHARES = tuple(density / sum(DENSITIES) for density in DENSITIES)
 
 
 def refuse_negative_spread(block):
@@ -30,9 +32,9 @@ def rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias)
     """y at zero drive, of a material that is virgin or was `poled`."""
     per_width, total = 1 / (sqrt(2.0) * interaction), 0.0
     for i in range(NODES):
-        half = coercive * exp(spread * QUANTILES[i]) * per_width
-        total += erf(play(play(0.0, (poled - bias) * per_width, half), -bias * per_width, half))
-    field = remanence * (total / NODES - 1) - bias
+        half = coercive * exp(spread * PLACES[i]) * per_width
+        total += SHARES[i] * erf(play(play(0.0, (poled - bias) * per_width, half), -bias * per_width, half))
+    field = remanence * (total - 1) - bias
     return (gain + quadratic * field) * field
 
 
@@ -44,8 +46,10 @@ class HomogenizedEnergy(Bank):
     density of the coercive fields, nu1, is lognormal, that of the interaction fields, nu2, normal: a Preisach operator
     whose density is their product. Of one coercive field the domains with an interaction field above -F_Ec point up,
     F_Ec the play p <- max(E - Ec, min(E + Ec, p)) (Krasnosel'skii & Pokrovskii 1989), which is exact in the interaction
-    field. There are 64 coercive fields of equal probability, the quantiles (i + 1/2) / 64 of the density. The
-    polarization is computed as the field eta P.
+    field. There are 64 coercive fields, coercive exp(1.5 spread q_i) with the quantiles q_i = (i + 1/2) / 64 of the
+    standard normal, and each has the share of the domains that is the density there over that of the places: in the
+    tail, where those of equal probability are far apart, they are closer. The polarization is computed as the field
+    eta P.
 
     E is the drive minus the bias. The history before the first sample is virgin, then `poled`, then the first sample.
     Responses of different kinds, such as P itself and a displacement, may share all parameters but gain and quadratic.
@@ -82,22 +86,22 @@ class HomogenizedEnergy(Bank):
         counted = from_rest * (branch == 0)  # the first branch gives `output` its coefficients
         zero = rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias) if counted else 0.0
         per_width = 1 / (sqrt(2.0) * interaction)
-        half = coercive * exp(spread * QUANTILES[int(branch)]) * per_width
+        half = coercive * exp(spread * PLACES[int(branch)]) * per_width
         before = play(0.0, (poled - bias) * per_width, half)
-        return gain, remanence, quadratic, bias, zero, per_width, half, before
+        return gain, remanence, quadratic, bias, zero, per_width, half, before, SHARES[int(branch)]
 
-    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before):
+    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
         return (play(before, (u - bias) * per_width, half),)
 
-    def step(p, u, gain, remanence, quadratic, bias, zero, per_width, half, before):
+    def step(p, u, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
         p = play(p, (u - bias) * per_width, half)
-        return p, erf(p)
+        return p, share * erf(p)
 
-    def rests(p, low, high, gain, remanence, quadratic, bias, zero, per_width, half, before):
+    def rests(p, low, high, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
         return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
 
-    def output(u, total, gain, remanence, quadratic, bias, zero, per_width, half, before):
-        field = u - bias + remanence * (total / NODES - 1)
+    def output(u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
+        field = u - bias + remanence * (total - 1)
         return (gain + quadratic * field) * field - zero
 
 
@@ -184,21 +188,35 @@ class Relaxing(HomogenizedEnergy):
         counted = from_rest * (branch == 0)
         zero = rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias) if counted else 0.0
         per_width = 1 / (sqrt(2.0) * interaction)
-        half = coercive * exp(spread * QUANTILES[int(branch)]) * per_width
+        half = coercive * exp(spread * PLACES[int(branch)]) * per_width
         before = play(0.0, (poled - bias) * per_width, half)
         heat = relaxation_coefficients(fluctuation * per_width, dt)
-        return gain, remanence, quadratic, bias, zero, per_width, half, before, *heat
+        return gain, remanence, quadratic, bias, zero, per_width, half, before, SHARES[int(branch)], *heat
 
-    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat):
+    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before, share, width, width_log_dt, per_heat):
         field = (u - bias) * per_width
         return play(before, field, half), field
 
     def step(
-        p, last, u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat
+        p,
+        last,
+        u,
+        gain,
+        remanence,
+        quadratic,
+        bias,
+        zero,
+        per_width,
+        half,
+        before,
+        share,
+        width,
+        width_log_dt,
+        per_heat,
     ):
         field = (u - bias) * per_width
         p = relaxed_play(p, last, field, half, width, width_log_dt, per_heat)
-        return p, field, erf(p)
+        return p, field, share * erf(p)
 
     def rests(
         p,
@@ -213,6 +231,7 @@ class Relaxing(HomogenizedEnergy):
         per_width,
         half,
         before,
+        share,
         width,
         width_log_dt,
         per_heat,
@@ -221,9 +240,9 @@ class Relaxing(HomogenizedEnergy):
         return relaxed_rests(p, least, most, half, width, width_log_dt)
 
     def output(
-        u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat
+        u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, share, width, width_log_dt, per_heat
     ):
-        field = u - bias + remanence * (total / NODES - 1)
+        field = u - bias + remanence * (total - 1)
         return (gain + quadratic * field) * field - zero
 
 
