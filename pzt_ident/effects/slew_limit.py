@@ -23,8 +23,8 @@ class SlewLimit(Block):
     place = Place.SLEW
     form = Form(
         "clip",
-        ("clip", "lag", "soft", "two_sided"),
-        "How the voltage approaches the command, and whether up and down alike.",
+        ("clip", "lag", "soft", "two_sided", "charge"),
+        "How the voltage approaches the command, whether up and down alike, and into which capacitance.",
     )
     sizes = tuple(1.25**-k for k in range(42))
     slowness = Parameter("s/drive", (0, 0.3), "Capacitance over the greatest current.", null=0)
@@ -116,13 +116,51 @@ class TwoSided(SlewLimit):
         return u, u
 
     def step(y, before, u, up, down):
-        sign, toward, away = (1.0, up, down) if before >= y else (-1.0, down, up)
-        back = sign * (before - u)
-        met = min(1.0, abs(before - y) / (toward + abs(back)))
-        most = up if u > y else down
-        follows = u if abs(u - y) <= most else y + (most if u > y else -most)
-        y = y + sign * (toward * met - away * (1 - met)) if back > away else follows
+        y = limited(y, before, u, up, down)
         return y, u, y
 
 
-SlewLimit.forms = {"lag": SaturatingLag, "soft": SoftLimit, "two_sided": TwoSided}
+def limited(y, before, u, up, down):
+    """Where y comes to behind a command from `before` to u, at most `up` or `down`."""
+    sign, toward, away = (1.0, up, down) if before >= y else (-1.0, down, up)
+    back = sign * (before - u)
+    met = min(1.0, abs(before - y) / (toward + abs(back)))
+    most = up if u > y else down
+    follows = u if abs(u - y) <= most else y + (most if u > y else -most)
+    return y + sign * (toward * met - away * (1 - met)) if back > away else follows
+
+
+class ChargeLimit(TwoSided):
+    """The currents limit the rate of the charge of a capacitance that grows with the voltage:
+    -1 / (ratio slowness) <= dQ/dt <= 1 / slowness,  Q = U_a + growth / 2 U_a^2.
+
+    Fleming & Leang (2014), ch. 14, with a differential capacitance C (1 + growth U_a), as ferroelectric actuators have.
+    Exact where the command is constant on a step, second order in dt elsewhere.
+    """
+
+    trials = {"ratio": 2, "growth": 2}
+    growth = Parameter("1/drive", (0, 0.9), "Relative growth of the differential capacitance per voltage.")
+
+    def prepare(slowness, ratio, growth, dt):
+        return (dt / slowness, dt / (slowness * ratio), growth) if slowness != 0 else (inf, inf, growth)
+
+    def start(u, up, down, growth):
+        return charge(u, growth), charge(u, growth)
+
+    def step(q, before, u, up, down, growth):
+        asked = charge(u, growth)
+        q = limited(q, before, asked, up, down)
+        return q, asked, u if q == asked else voltage(q, growth)
+
+
+def charge(u, growth):
+    """Q(U), over the capacitance at 0 V."""
+    return u + 0.5 * growth * u * u
+
+
+def voltage(q, growth):
+    """U(Q), the root that is 0 at 0."""
+    return 2 * q / (1 + sqrt(max(1 + 2 * growth * q, 0.0)))
+
+
+SlewLimit.forms = {"lag": SaturatingLag, "soft": SoftLimit, "two_sided": TwoSided, "charge": ChargeLimit}

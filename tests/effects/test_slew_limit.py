@@ -56,3 +56,40 @@ def test_down_is_as_many_times_slower_as_told():
     after = np.arange(1, 101)
     np.testing.assert_allclose(found[100:200], np.minimum(0.4 * after, 10), atol=1e-12)
     np.testing.assert_allclose(found[200:], np.maximum(10 - 0.2 * after, 0), atol=1e-12)
+
+
+def charged(drive, **values):
+    values = {"slowness": 1 / 400, "ratio": 2.0, "growth": 0.05} | values
+    return response(
+        ["slew_limit.charge"], {f"slew_limit.{word}": value for word, value in values.items()}, drive, dt=DT
+    )
+
+
+def test_the_charge_of_a_jump_grows_and_falls_at_the_limits():
+    """Q = U + growth / 2 U^2 of -4, 10 and 0 V."""
+    found = charged(np.concatenate([[0.0], np.full(99, 10.0), np.full(100, -4.0), np.full(100, 0.0)]))
+    charge, after = found + 0.025 * found**2, np.arange(1, 101)
+    assert found.max() == 10 and found.min() == pytest.approx(-4)
+    np.testing.assert_allclose(charge[1:100], np.minimum(0.4 * after[:-1], 12.5), atol=1e-12)
+    np.testing.assert_allclose(charge[100:200], np.maximum(12.5 - 0.2 * after, -3.6), atol=1e-12)
+    np.testing.assert_allclose(charge[200:], np.minimum(-3.6 + 0.4 * after, 0), atol=1e-12)
+
+
+def test_the_charge_of_a_capacitance_that_does_not_grow_is_the_voltage():
+    np.testing.assert_allclose(charged(CORNERS, growth=0.0), limited(CORNERS, 400, ratio=2.0), rtol=0, atol=1e-12)
+
+
+def test_a_charge_is_of_second_order_in_the_step():
+    """Where a command moves in a sample."""
+    drive = 10 * np.sin(np.arange(200) / 9)
+    times = np.arange(199 * 256 + 1) / 256
+    exact = response_in(drive, times, 256)
+    errors = [np.abs(response_in(drive, times, n) - exact).max() for n in (4, 8, 16)]
+    assert errors[0] < 0.1 and errors[0] / errors[2] > 6
+
+
+def response_in(drive, times, steps):
+    """Of a drive that is linear between samples, in so many steps of each."""
+    fine = np.interp(times[:: 256 // steps], np.arange(200), drive)
+    values = {"slew_limit.slowness": 1 / 400, "slew_limit.ratio": 2.0, "slew_limit.growth": 0.09}
+    return response(["slew_limit.charge"], values, fine, dt=DT / steps)[::steps]
