@@ -46,9 +46,11 @@ class Shown:
         self.share = self._share() if self.effect else 0.0
 
     def _host(self) -> str:
-        """The block in whose equation an effect acts, of the standard stage where that holds it."""
-        holders = (w for w in (OPERATOR, MECHANICS, *blocks.words()) if blocks[w].holds(self.block))
-        return next(holders) if issubclass(self.block, Term) else OPERATOR
+        """The block in whose equation an effect acts, of the standard stage where that holds it, and in this form."""
+        if not issubclass(self.block, Term):
+            return OPERATOR
+        holders = [w for w in (OPERATOR, MECHANICS, *blocks.words()) if blocks[w].holds(self.block)]
+        return min(holders, key=lambda word: not blocks[word].tells(self.block))
 
     def _stage(self, items: list[str]) -> Stage:
         return Stage([blocks[item] for item in items], VALUES | self.fixed)

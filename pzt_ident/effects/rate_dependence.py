@@ -16,7 +16,7 @@ class RateDependence(Term):
     alpha absorbs it.
     """
 
-    form = Form("logarithm", ("logarithm", "onset", "power"), "How the hysteresis grows with the rate.")
+    form = Form("logarithm", ("logarithm", "onset", "power", "alike"), "How the hysteresis grows with the rate.")
     look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
     separate_by = "Repeat one loop at rates two decades apart, and a small amplitude at the fastest."
     remedy = "Run at the rate that the model was identified at, or schedule the feedforward on the rate."
@@ -44,4 +44,14 @@ class Power(RateDependence):
     trials = {"exponent": 4}
 
 
-RateDependence.forms = {"onset": Onset, "power": Power}
+class Alike(RateDependence):
+    """All half-widths of plays grow by the same: r_i <- r_i + rate reach (|du/dt| / (100 V/s))^p, p being `order`.
+
+    Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, where p is 1. Of other operators it is the
+    first form.
+    """
+
+    trials = {"order": 3}
+
+
+RateDependence.forms = {"onset": Onset, "power": Power, "alike": Alike}

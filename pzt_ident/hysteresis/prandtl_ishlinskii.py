@@ -1,5 +1,7 @@
 """Prandtl-Ishlinskii hysteresis: weighted plays."""
 
+from math import log
+
 from pzt_ident.hysteresis._rate import FASTEST, SLOW, growth, rate_terms
 from pzt_ident.model.block import Bank, Place
 from pzt_ident.model.parameter import Parameter
@@ -17,7 +19,7 @@ class PrandtlIshlinskii(Bank):
     loops close.
 
     Effects, each without influence at zero: r_i <- r_i (1 + rate L), L as in Bouc-Wen; counted from rest where it has
-    an onset or is a power.
+    an onset or is a power, or r_i + rate reach (|du/dt| / (100 V/s))^order.
     """
 
     place = Place.OPERATOR
@@ -30,6 +32,7 @@ class PrandtlIshlinskii(Bank):
         "V/s", (SLOW, FASTEST), "Drive rate at which they begin to grow.", SLOW, "log", effect="rate_dependence.onset"
     )
     exponent = Parameter("1", (0, 1), "Power of the drive rate.", 0, effect="rate_dependence.power")
+    order = Parameter("1", (0.2, 2), "Power of the drive rate.", 1, effect="rate_dependence.alike")
 
     def threshold(reach, branch):
         return reach * (branch + 1) / PLAYS
@@ -78,7 +81,30 @@ class WideningFromRest(Widening):
         return gain, weight, reach * (branch + 1) / PLAYS, 1 - growth(0.0, *terms), *terms
 
 
+class WideningAlike(PrandtlIshlinskii):
+    """r = r_i + rate reach (|du/dt| / (100 V/s))^order: half-widths that all grow by the same.
+
+    Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, where the order is 1.
+    """
+
+    def prepare(gain, weight, reach, rate, order, branch, dt):
+        return gain, weight, reach * (branch + 1) / PLAYS, *rate_terms(rate * reach * order * log(10), SLOW, order, dt)
+
+    def start(u, gain, weight, half, rate, faster, slow, exponent, root):
+        return max(u - half, min(u + half, 0.0)), u
+
+    def step(p, before, u, gain, weight, half, rate, faster, slow, exponent, root):
+        at_rest = growth(0.0, rate, faster, slow, exponent, root)
+        wide = max(half + growth(abs(u - before), rate, faster, slow, exponent, root) - at_rest, 0.0)
+        p = max(u - wide, min(u + wide, p))
+        return p, u, weight * p
+
+    def output(u, total, gain, weight, half, rate, faster, slow, exponent, root):
+        return gain * u + total
+
+
 PrandtlIshlinskii.forms = {
+    "rate_dependence.alike": WideningAlike,
     "rate_dependence.onset": WideningFromRest,
     "rate_dependence.power": WideningFromRest,
     "rate_dependence": Widening,

@@ -56,3 +56,19 @@ def test_standing_is_not_without_bounds():
     np.testing.assert_allclose(driven(DRIVE, 1e15), driven(DRIVE, 1e18), rtol=0, atol=1e-12)
     far = driven(DRIVE, 1e3, rate=0.3), response(["bouc_wen"], KNOWN | {"bouc_wen.alpha": 0.004}, DRIVE)
     np.testing.assert_allclose(*far, rtol=0, atol=1e-12)
+
+
+PLAYS = {f"prandtl_ishlinskii.weight_{i}": 0.01 * i for i in range(1, 9)} | {"prandtl_ishlinskii.gain": 0.05}
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0])
+@pytest.mark.parametrize("speed", [0.0, 50.0, 400.0])
+def test_half_widths_that_grow_alike_are_farther_apart_from_zero(order, speed):
+    """By 0.02 of the widest at 100 V/s, each of them: on a branch a play is u less its half-width."""
+    values = PLAYS | {"prandtl_ishlinskii.reach": 40.0}
+    words = {"prandtl_ishlinskii.rate": 0.02, "prandtl_ishlinskii.order": order}
+    drive = path(0, 100, points=100)
+    found = response(["prandtl_ishlinskii", "rate_dependence.alike"], values | words, drive, dt=1 / max(speed, 1e-9))
+    wider = 5.0 * np.arange(1, 9) + 0.8 * (speed / 100) ** order
+    expected = 0.05 * 100 + 0.01 * np.arange(1, 9) @ (100 - wider)
+    assert found[-1] == pytest.approx(expected, rel=1e-4)
