@@ -12,11 +12,10 @@ from pzt_ident.diagnosis.candidates import (
     decide_by_score,
     promises_enough,
     refit_all,
-    restart_look_alikes,
+    refit_the_rest,
     restart_unconfirmed,
     score_all,
     short_list,
-    simpler_look_alikes,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
@@ -32,6 +31,7 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate, choose_forms, least_score, refit_other_forms
 from pzt_ident.diagnosis.limit import is_limited
+from pzt_ident.diagnosis.look_alikes import restart_look_alikes, simpler_look_alikes
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.reasons import (
     identification_only_sentence,
@@ -103,6 +103,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     promising = [item for item in candidates if item.score.explained > least]
     shortlist = refit_all(case, first, before, short_list(promising))
     refit_other_forms(case, first, before, candidates, shortlist)
+    refit_the_rest(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)
     choose_forms(case, first, shortlist)
     shortlist += simpler_look_alikes(case, first, before, candidates, shortlist)

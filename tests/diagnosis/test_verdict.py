@@ -11,11 +11,12 @@ import rig
 import stage
 from pzt_ident.diagnosis import budget, refit, starts, threads
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import decide_by_score, refit_all, restart_look_alikes, score_all, worth_other_forms
+from pzt_ident.diagnosis.candidates import decide_by_score, refit_all, score_all, worth_other_forms
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.forms import NOT_ALL, Candidate, contending_forms, least_score, refit_other_forms
+from pzt_ident.diagnosis.look_alikes import restart_look_alikes
 from pzt_ident.diagnosis.reasons import missing_sentence, nothing_explains
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
