@@ -41,6 +41,7 @@ from pzt_ident.model.registry import blocks, word_of
 
 PROMISING = 0.6  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
 SHORTLIST = 6  # effects that are refitted
+AS_CLOSE = 1.1  # times what the closest to the records which are fitted leaves: the simplest of these is meant
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -178,15 +179,18 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def refit_astray(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
-    """Refit the candidate that scores best from random points, and in its likely forms the one that is closest to the
-    records which are fitted, where they drive the model onto bounds; not where an effect of no more parameters is
-    adequate."""
-    best, closest = candidates[0], min(candidates, key=lambda candidate: candidate.closest.identify)
+    """Refit the candidate that scores best from random points, and in its likely forms the simplest of those that are
+    closest to the records which are fitted, where they drive the model onto bounds, or off those that it rested on; not
+    where an effect of no more parameters is adequate."""
+    best, least = candidates[0], min(candidate.closest.identify for candidate in candidates)
+    close = [candidate for candidate in candidates if candidate.closest.identify <= AS_CLOSE * least]
+    closest = min(close, key=lambda candidate: (candidate.closest.freedom, candidate.closest.identify))
     fits = [fit for candidate in candidates for fit in candidate.refits.values() if adequate(case, first, fit)]
     if any(fit.freedom <= best.best.freedom for fit in fits):
         return
     refit_from_random_points(case, first, best)
-    if closest is not best and drives_onto_bounds(case, first, closest):
+    moved = drives_onto_bounds(case, first, closest) or rests_on_bounds(case, first, closest.closest)
+    if closest is not best and moved:
         refit_likely_forms(case, first, first, closest)
         refit_from_random_points(case, first, closest)
 

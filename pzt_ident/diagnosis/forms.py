@@ -111,10 +111,12 @@ def drives_onto_bounds(case: Case, first: Fit, candidate: Candidate) -> bool:
 
 
 def rests_on_bounds(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether an effect beside the model as given explains most and leaves far more than the noise, and parameters of
-    the model rest on bounds without it and with it: both may be in a side minimum, which no second effect mends."""
-    held = {*first.on_bounds} & {*fit.on_bounds} & {*first.problem.names}
-    return bool(held) and leaves_some(case, first, first, fit) and fit.identify > FAR * case.floor
+    """Whether an effect beside the model as given explains most and leaves more than the noise, and parameters of the
+    model rest on bounds without it, and none of these with it, or with it, too, far from the noise: both may be in a
+    side minimum, which no second effect mends, or the latter on the way out of it."""
+    held = {*first.on_bounds} & {*first.problem.names}
+    far = fit.identify > FAR * case.floor
+    return bool(held) and leaves_some(case, first, first, fit) and (far or not held & {*fit.on_bounds})
 
 
 def refit_anew(case: Case, first: Fit, candidate: Candidate, items: Sequence[str]) -> None:

@@ -26,8 +26,8 @@ class SlewLimit(Block):
         ("clip", "lag", "soft", "two_sided", "charge"),
         "How the voltage approaches the command, whether up and down alike, and into which capacitance.",
     )
-    sizes = tuple(1.25**-k for k in range(42))
-    slowness = Parameter("s/drive", (0, 0.3), "Capacitance over the greatest current.", null=0)
+    sizes = tuple(1.25**-k for k in range(50))
+    slowness = Parameter("s/drive", (0, 1.8), "Capacitance over the greatest current.", null=0)
     look_alikes = ("amplifier_lag", "sensor_lag", "delay")
     separate_by = "Sweep the amplitude at one frequency: this sets in where frequency times amplitude exceeds a limit."
     remedy = "Stay below the slew rate, round the corners of the drive, or use an amplifier with more current."

@@ -91,6 +91,7 @@ def test_what_is_closest_to_the_fitted_records_is_refitted_further_where_it_driv
     def refit_from_random_points(case, first, candidate):
         gone_on.append(candidate.score.effect)
 
+    monkeypatch.setattr(candidates, "rests_on_bounds", lambda case, first, fit: False)
     monkeypatch.setattr(candidates, "refit_from_random_points", refit_from_random_points)
     assert candidates.refit_all(CASE, first, first, offered) == offered
     assert gone_on == ["distributed_memory", *further]
@@ -184,3 +185,20 @@ def test_what_scores_little_is_refitted_where_nothing_explains_most(monkeypatch,
     assert [word for word, _ in tried] == refitted and all(rival == left for _, rival in tried)
     assert [item.score.effect for item in shortlist[1:]] == refitted
     assert all(item.refits for item in shortlist)
+
+
+@pytest.mark.parametrize(("damped", "anew"), [(3.6, "viscous_damping"), (3.7, "resonance")])
+def test_the_simplest_of_the_closest_is_refitted_where_it_leads_off_the_bounds_of_the_model(monkeypatch, damped, anew):
+    """A damper left 3.70 floors of a density that rested on a bound, a second mode 3.57, and from elsewhere 0.9."""
+    first, gone_on = fit(8.7, 8.5), []
+    left = {"friction": (5.0, 8), "viscous_damping": (damped, 6), "resonance": (3.3, 9)}
+    offered = [Candidate.of([Score(word, explained=0.6)]) for word in left]
+    refits = {word: fit(error, error, [word], size) for word, (error, size) in left.items()}
+    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: refits[effects[-1]])
+    monkeypatch.setattr(candidates, "drives_onto_bounds", lambda case, first, candidate: False)
+    monkeypatch.setattr(candidates, "rests_on_bounds", lambda case, first, fit: fit.effects[-1] == anew)
+    monkeypatch.setattr(
+        candidates, "refit_from_random_points", lambda case, first, item: gone_on.append(item.score.effect)
+    )
+    candidates.refit_all(CASE, first, first, offered)
+    assert gone_on == ["friction", anew]

@@ -123,12 +123,15 @@ def test_only_parameters_of_the_model_itself_rest_anew(before, after, anew):
     [
         (["gain"], ["gain"], 6.0, True),
         (["gain"], ["gain"], 4.0, False),
-        (["gain"], [], 6.0, False),
+        (["gain"], [], 4.0, True),
+        (["gain"], [], 1.0, False),
         ([], ["gain"], 6.0, False),
-        (["gain"], ["knee"], 6.0, False),
+        (["gain"], ["knee"], 4.0, True),
     ],
 )
-def test_a_side_minimum_is_one_that_rests_on_the_same_bounds_far_from_the_noise(given, after, left, rests):
+def test_a_side_minimum_rests_on_the_same_bounds_far_from_the_noise_or_is_on_the_way_off_these(
+    given, after, left, rests
+):
     problem = SimpleNamespace(names=["gain"])
     first = SimpleNamespace(identify=20.0, validate=20.0, total=20.0, problem=problem, on_bounds=given)
     best = SimpleNamespace(identify=left, validate=left, total=left, on_bounds=after)
