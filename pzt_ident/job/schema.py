@@ -236,7 +236,7 @@ def _add_faults(document: Document, error: ValidationError) -> None:
             message = ": ".join(part for part in (raised.where, raised.message) if part)
             document.fault(loc, message, raised.remedy)
         elif kind in ("extra_forbidden", "unexpected_keyword_argument"):
-            remedy = _name_on_axis(document, loc) or nearest(str(loc[-1]), _known_keys(loc[:-1]))
+            remedy = _of_noise(loc) or _name_on_axis(document, loc) or nearest(str(loc[-1]), _known_keys(loc[:-1]))
             document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
         elif kind == "missing" and isinstance(loc[-1], str):
             close = get_close_matches(loc[-1], document.keys(loc[:-1]), 1)
@@ -268,6 +268,11 @@ def _without(data: dict[str, Any], locs: list[Loc]) -> dict[str, Any]:
         else:
             remaining.pop(str(place[0]), None)
     return remaining
+
+
+def _of_noise(loc: Loc) -> str:
+    """Where the noise is told; empty for a key that does not ask for it."""
+    return "the noise floor is taken from the data, `pzt-ident check` tells it" if "noise" in str(loc[-1]) else ""
 
 
 def _name_on_axis(document: Document, loc: Loc) -> str:

@@ -200,6 +200,7 @@ ONE_FAULT = [
     ("x.lumped.mass: {value: 0.1566}", "lumped.mass: {x: {value: 1}}", "unknown key 'x'", "is `x.lumped.mass`"),
     ("[bouc_wen, lumped]", "[preisach]", "10:9: model[0]: unknown block 'preisach'", "homogenized_energy speaks of it"),
     ("[1e-6, 1]", "[1, 1]", "13:28: parameters.bouc_wen.alpha.bounds: both bounds are 1", "`value: 1`"),
+    ("repeats: 3", "noise_floor: 5 nm", "17:1: noise_floor: unknown key 'noise_floor'", "is taken from the data"),
     ("lumped]", "{name: lumpd}]", "10:26: model[1].name: unknown block 'lumpd'", "did you mean 'lumped'"),
     ("lumped]", "{name: lumped, size: 3}]", "10:34: model[1].size: unknown setting 'size'", "write just `lumped`"),
     ("lumped]", "{size: 3}]", "10:19: model[1]: missing key 'name'", "add `name: ...`"),

@@ -88,7 +88,12 @@ def test_faults_of_settings(session):
     session.begin(form())
     with pytest.raises(InputError) as raised:
         set_parameter(session, {"parameter": "bouc_wen.alpha", "bounds": [2, 1]})
-    assert session.readable(str(raised.value)).startswith("bounds of bouc_wen.alpha: bounds reversed")
+    message = session.readable(str(raised.value))
+    assert message.startswith("bounds of bouc_wen.alpha: bounds reversed") and "the lower one first" in message
+    with pytest.raises(InputError) as raised:
+        set_parameter(session, {"parameter": "bouc_wen.alpha", "bounds": [1, 1]})
+    message = session.readable(str(raised.value))
+    assert message == "bounds of bouc_wen.alpha: both bounds are 1\n  fix the parameter at 1"
     with pytest.raises(InputError) as raised:
         search(session, {"optimizers": [{"name": "pso", "population": 0}], "repeats": 0})
     message = session.readable(str(raised.value))

@@ -28,6 +28,7 @@ JOINED = (
     "as where measurements were joined, a sensor lost counts or a stage slipped: "
     "give what is before and after it a record of its own, by `rows`"
 )
+FEW = 3  # samples that are away: no record is worth dividing there
 MOVING = 6.0  # times the scatter of a drive: one that goes farther in AROUND samples moves
 
 
@@ -39,6 +40,8 @@ def dropout_phrase(record: Record) -> str:
     phrases = [f"{whose} {span_of(record, stretches)}" for whose, stretches in gaps.items() if stretches]
     jump = "jumps" if len(phrases) == 1 and phrases[0].startswith("the drive") else "jump"
     advice = "a channel most likely dropped out; give what is before and after a record of its own, by `rows`"
+    if all(last - first < FEW for stretches in gaps.values() for first, last in stretches):
+        advice = "what is there is most likely wrong; mend the file"
     return f"{listed(phrases)} {jump} away and back: {advice}" if phrases else ""
 
 

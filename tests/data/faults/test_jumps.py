@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from data.faults.motions import MOTIONS, TRIANGLE, T, followed, measured
 from pzt_ident.data.faults.jumps import (
+    FEW,
     LONGEST,
     drive_dropouts,
     drive_holds,
@@ -45,7 +46,8 @@ def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_f
     record.drive[0, gap] = value
     assert drive_dropouts(record, 0) == [(first, first + length - 1)] and not joins(record)
     phrase = dropout_phrase(record)
-    assert phrase.startswith("the drive of x from ") and " s jumps away and back: a channel" in phrase
+    assert phrase.startswith("the drive of x from ") and " s jumps away and back: " in phrase
+    assert ("mend the file" in phrase) == (length <= FEW) != ("a channel most likely dropped out" in phrase)
     record.response[0, gap] = 1e-7 * value
     assert not drive_dropouts(record, 0)
 
