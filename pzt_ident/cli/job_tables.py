@@ -8,6 +8,7 @@ import click
 
 from pzt_ident.cli.result_tables import show_notes
 from pzt_ident.cli.table import grouped_by_range, number, table
+from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import USE_NAMES
 
 Facts = dict[str, Any]
@@ -33,6 +34,8 @@ def show_job(facts: Facts) -> None:
     )
     for note in facts["notes"]:
         click.echo(note)
+    for reason, words in facts["out_of_place"].items():
+        click.echo(f"no diagnosis names {listed(words)}: {reason}")
     click.echo(f"runs: {' '.join(facts['runs'])}, {facts['evaluations']} evaluations in all")
 
 

@@ -14,6 +14,17 @@ def applicable(case: Case, effects: tuple[str, ...], in_setup: bool = False) -> 
     return [word for word in words if word not in present and fitting_forms(case, effects, word)]
 
 
+def out_of_place(case: Case) -> dict[str, list[str]]:
+    """The effects of which no form can act in this model, by the reason."""
+    found: dict[str, list[str]] = {"no block of this model has a term for it": [], "there is no second axis": []}
+    reasons = [*found]
+    for word in blocks.effects():
+        forms = [blocks[item] for item in blocks.forms(word)]
+        if word not in (*map(word_of, case.effects), *case.ruled_out) and not fitting_forms(case, case.effects, word):
+            found[reasons[any(issubclass(form, Coupling) for form in forms)]].append(word)
+    return {reason: words for reason, words in found.items() if words}
+
+
 def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:
     """The items of the forms of an effect that can act in the model with `effects`, in the order of the declaration; of
     those that are one there, as in a block that has the effect in one form only, the first."""

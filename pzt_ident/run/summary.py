@@ -10,9 +10,11 @@ import numpy as np
 from pzt_ident.data.noise import WEAK, noise_floor
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
+from pzt_ident.diagnosis.possible import out_of_place
 from pzt_ident.job.schema import Job
 from pzt_ident.model.block import Modes
 from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.improve import case_of
 from pzt_ident.run.statement import Statement
 from pzt_ident.search.gains import far_off, free_gains
 from pzt_ident.search.problem import Problem
@@ -23,7 +25,8 @@ MOVED = 2e-3  # of the range of a drive that moves
 
 
 def summary_of(job: Job) -> Facts:
-    """Records, axes, parameters and optimizers of a job. Raises InputError on whatever is wrong with its data."""
+    """Records, axes, parameters and optimizers of a job, and what a diagnosis cannot name in it. Raises InputError on
+    whatever is wrong with its data."""
     statement = Statement(job)
     records, problem = statement.records, statement.problem
     tasks = tasks_of(statement, job.folder)
@@ -43,6 +46,7 @@ def summary_of(job: Job) -> Facts:
             *_all_fitted(records),
             *_cut_in_motion(job, records, problem),
         ],
+        "out_of_place": out_of_place(case_of(statement)),
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),
     }

@@ -86,3 +86,13 @@ def test_a_record_that_is_cut_out_in_motion_is_told_unless_the_job_says_what_was
     changes = ("identify.csv, use: identify", f"identify.csv, use: identify, {cut}"), ("[bouc_wen]", model)
     notes = notes_with(tmp_path, *changes, made=made)
     assert ["is cut out of its file where the drive moves" in note for note in notes] == [True] * told
+
+
+def test_what_a_diagnosis_cannot_name_is_told_with_the_reason(tmp_path):
+    """A term that another block has, and a coupling of one axis; not what the job rules out."""
+    job = stage.JOB + "rule_out: [kinematic_coupling]\n"
+    told = summary_of(load_job(stage.write(tmp_path, stage.records({}), job)))["out_of_place"]
+    assert told == {
+        "no block of this model has a term for it": ["load_mass", "viscous_damping"],
+        "there is no second axis": ["cross_coupling"],
+    }
