@@ -81,17 +81,16 @@ def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDAr
 
 def rest_noise(drive: Array, response: Array) -> list[Estimate]:
     """The noise of each rest: of the last four fifths of an interval of constant drive, or of less where these still
-    settle, less a quartic, which follows creep, and the lines of the mains and the floor. Of short rests that have
-    any."""
+    settle, less a quartic, which follows creep, and the lines of the mains and the floor; none of a short rest in which
+    the reading hangs."""
     estimates = []
     for first, last in rests(drive):
         first += (last - first) // 5
         if last - first >= SHORT:
             noise, basis = settled(response[first:last])
             memory = memory_in(noise, basis)
-            if memory < MOST_MEMORY and (
-                last - first >= LONG or noise.any()
-            ):  # what rings or settles is more alike from sample to sample
+            moves = last - first >= LONG or np.ptp(response[first:last]) > 0
+            if moves and memory < MOST_MEMORY:  # what rings or settles is more alike from sample to sample
                 free = 2 * (noise.size - basis.shape[1]) * (1 - memory**2) / (1 + memory**2)
                 estimates.append(Estimate(deviation(noise, basis), noise.size, free**-0.5))
     return estimates

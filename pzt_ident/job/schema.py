@@ -3,13 +3,11 @@ and remedy."""
 
 from __future__ import annotations
 
-import copy
 import hashlib
 import json
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,7 +17,8 @@ from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job import checks
 from pzt_ident.job.chain import CachedChain, ChainParts
-from pzt_ident.job.document import Document, Fault, Loc, reject
+from pzt_ident.job.document import Document, Fault, reject
+from pzt_ident.job.faults import add_faults, without
 from pzt_ident.job.normalise import long_form
 from pzt_ident.job.plugins import plug
 from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
@@ -130,8 +129,8 @@ class Job(BaseModel):
         try:
             return cls.model_validate_json(json.dumps(data), context=document)
         except ValidationError as error:
-            _add_faults(document, error)
-            readable = _without(data, [item["loc"] for item in error.errors()])
+            add_faults(document, error, cls.model_json_schema())
+            readable = without(data, [item["loc"] for item in error.errors()])
         with suppress(ValidationError):
             cls.model_validate_json(json.dumps(readable), context=document)
         return None
@@ -204,113 +203,3 @@ def _text_of(path: Path) -> str:
         line, column = raw.count(b"\n", 0, error.start) + 1, len(before[2]) + 1
         message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
         reject(str(path), [Fault(line, column, "", message, "save the file as UTF-8")])
-
-
-_EXPECTED = {
-    "int_type": ("a whole number", "write a whole number, such as 5"),
-    "int_from_float": ("a whole number", "write a whole number, such as 5"),
-    "float_type": ("a number", "write a plain number, such as 0.5"),
-    "finite_number": ("a finite number", "write a plain number, such as 0.5"),
-    "string_type": ("a text", "put it in quotes"),
-    "string_pattern_mismatch": ("a name for a folder", "use letters, digits, blanks and . + - inside"),
-    "bool_type": ("true or false", "write true or false"),
-    "literal_error": ("{expected}", "write {expected}"),
-    "tuple_type": ("a list", "write it as [first, second]"),
-    "dict_type": ("a mapping", "write it as {{key: value}}"),
-    "dataclass_type": ("a mapping", ""),
-    "greater_than": ("above {gt:g}", "give a value above {gt:g}"),
-    "greater_than_equal": ("at least {ge:g}", "give at least {ge:g}"),
-    "less_than_equal": ("at most {le:g}", "give at most {le:g}"),
-    "too_long": ("a list of {max_length}", "give {max_length} values"),
-    "missing": ("[first, second]", "write both"),
-}
-"""By pydantic's kinds of error: what the value is not, and what to write."""
-
-
-def _add_faults(document: Document, error: ValidationError) -> None:
-    """Add pydantic's errors to the document in plain words; those of the members of a union become one fault."""
-    wrong: dict[Loc, list[tuple[str, str]]] = {}
-    for item in error.errors(include_url=False):
-        loc, kind, raised = item["loc"], item["type"], item.get("ctx", {}).get("error")
-        if isinstance(raised, InputError):
-            message = ": ".join(part for part in (raised.where, raised.message) if part)
-            document.fault(loc, message, raised.remedy)
-        elif kind in ("extra_forbidden", "unexpected_keyword_argument"):
-            remedy = _of_noise(loc) or _name_on_axis(document, loc) or nearest(str(loc[-1]), _known_keys(loc[:-1]))
-            document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
-        elif kind == "missing" and isinstance(loc[-1], str):
-            close = get_close_matches(loc[-1], document.keys(loc[:-1]), 1)
-            remedy = f"add `{loc[-1]}: ...`" + "".join(f", or write it for {key!r}" for key in close)
-            document.fault(loc[:-1], f"missing key {loc[-1]!r}", remedy)
-        else:
-            expected, remedy = _EXPECTED.get(kind, (item["msg"], "see `pzt-ident init` for an example"))
-            facts = item.get("ctx", {})
-            remedy = _as_it_is_meant(document, loc, kind) or remedy.format(**facts)
-            wrong.setdefault(document.reach(loc), []).append((expected.format(**facts), remedy))
-    for loc, alternatives in wrong.items():
-        expected, remedy = (" or ".join(dict.fromkeys(column)) for column in zip(*alternatives, strict=True))
-        document.fault(loc, f"{document.source(loc)} is not {expected}", remedy)
-
-
-_SEPARATE = {"records": 3, "parameters": 2, "stop": 2}
-"""How deep a part can be removed from a section without false faults in the rest of it."""
-
-
-def _without(data: dict[str, Any], locs: list[Loc]) -> dict[str, Any]:
-    """The data without the keys that lead to these places; without the section where no such key can be removed."""
-    remaining = copy.deepcopy(data)
-    for place in {loc[: _SEPARATE.get(str(loc[0]), 1)] for loc in locs}:
-        owner: Any = remaining
-        for part in place[:-1]:
-            owner = owner[part] if not isinstance(owner, dict) or part in owner else {}
-        if isinstance(owner, dict) and place[-1] in owner:
-            del owner[place[-1]]
-        else:
-            remaining.pop(str(place[0]), None)
-    return remaining
-
-
-def _of_noise(loc: Loc) -> str:
-    """Where the noise is told; empty for a key that does not ask for it."""
-    return "the noise floor is taken from the data, `pzt-ident check` tells it" if "noise" in str(loc[-1]) else ""
-
-
-def _name_on_axis(document: Document, loc: Loc) -> str:
-    """What to write for an axis below the name of a parameter; empty where the place is none."""
-    if loc[0] != "parameters" or loc[-1] not in document.keys(("channels", "axes")):
-        return ""
-    return f"the name of one axis is `{loc[-1]}.{loc[1]}`"
-
-
-def _known_keys(loc: Loc) -> list[str]:
-    """The keys that the mapping at a place may have, from the schema of the job."""
-    schema = Job.model_json_schema()
-    definitions, node = schema["$defs"], schema
-    for part in loc:
-        node = node["properties"][part] if part in node.get("properties", {}) else _item_schema(node)
-        node = next((option for option in node.get("anyOf", ()) if "$ref" in option), node)
-        if "$ref" in node:
-            node = definitions[node["$ref"].rpartition("/")[2]]
-    return list(node["properties"])
-
-
-def _as_it_is_meant(document: Document, loc: Loc, kind: str) -> str:
-    """What to write for a number that is a parameter's, a mapping in the place of a list, or anything in that of a
-    mapping; empty for other kinds of error."""
-    number = loc[0] == "parameters" and len(loc) == 2 and document.kind(loc) in ("int", "float")
-    if kind == "dataclass_type":
-        some = f"{{value: {document.source(loc)}}}" if number else "{key: value}"
-        return f"write it as {some}{_choice_of_keys(loc)}"
-    return "put it in brackets, [{...}]" if kind == "tuple_type" and document.kind(loc) == "map" else ""
-
-
-def _choice_of_keys(loc: Loc) -> str:
-    """The keys that a mapping at a place may have, in words; the settings of a block or an optimizer are beside its
-    name."""
-    words = ["its settings" if key == "settings" else key for key in _known_keys(loc)]
-    return f" with some of {', '.join(words)}"
-
-
-def _item_schema(schema: dict[str, Any]) -> dict[str, Any]:
-    """The schema of the items of a list or mapping."""
-    return schema["items"] if "items" in schema else schema["additionalProperties"]

@@ -265,10 +265,11 @@ def test_a_hum_that_short_rests_do_not_tell_from_noise_is_told_in_windows():
     assert noise_floor(beginning_at_rest(60, hum=30.0, behind=3.0), 0).source != "rest segments"
 
 
-def test_a_short_rest_in_which_the_reading_hangs_is_no_evidence():
+@pytest.mark.parametrize("value", [0.0, 1.23e3])
+def test_a_short_rest_in_which_the_reading_hangs_is_no_evidence(value):
     made = beginning_at_rest(40)
     for one in made:
-        one.response[:, :41] = 0
+        one.response[:, :41] = value
     assert noise_floor(made, 0).value > 0.5
 
 
