@@ -45,10 +45,10 @@ class Power(RateDependence):
 
 
 class Alike(RateDependence):
-    """All half-widths of plays grow by the same: r_i <- r_i + rate reach (|du/dt| / (100 V/s))^p, p being `order`.
+    """All half-widths of plays grow by the same: r_i <- r_i + rate r_8 x^p, x = |du/dt| / (100 V/s), p being `order`.
 
-    Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, where p is 1. Of other operators it is the
-    first form.
+    r_8 is the widest. Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, where p is 1. Of other
+    operators it is the first form.
     """
 
     trials = {"order": 3}

@@ -101,7 +101,7 @@ def faded(x, fading):
 
 
 class TwoSided(SlewLimit):
-    """An amplifier that sources another current than it sinks: -1 / (ratio slowness) <= dU_a/dt <= 1 / slowness.
+    """An amplifier that sources another current than it sinks: slowness dU_a/dt <= 1,  ratio slowness dU_a/dt >= -1.
 
     Fleming & Leang (2014), ch. 14: the bridge charges and discharges the load through different transistors.
     """
@@ -132,7 +132,7 @@ def limited(y, before, u, up, down):
 
 class ChargeLimit(TwoSided):
     """The currents limit the rate of the charge of a capacitance that grows with the voltage:
-    -1 / (ratio slowness) <= dQ/dt <= 1 / slowness,  Q = U_a + growth / 2 U_a^2.
+    Q = U_a + growth U_a^2 / 2,  slowness dQ/dt <= 1,  ratio slowness dQ/dt >= -1.
 
     Fleming & Leang (2014), ch. 14, with a differential capacitance C (1 + growth U_a), as ferroelectric actuators have.
     Exact where the command is constant on a step, second order in dt elsewhere.
