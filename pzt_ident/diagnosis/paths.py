@@ -25,10 +25,11 @@ from pzt_ident.diagnosis.exchange import (
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
-from pzt_ident.diagnosis.proof import Suspect, unproven
+from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import refit, values_in
 from pzt_ident.diagnosis.second_mode import exchange_main_mode, exchange_second_mode
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
+from pzt_ident.diagnosis.suspect import Suspect
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 from pzt_ident.model.registry import word_of

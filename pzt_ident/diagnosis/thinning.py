@@ -20,10 +20,11 @@ from pzt_ident.diagnosis.faults import with_faults, without_outdone
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.paths import PROVEN
-from pzt_ident.diagnosis.proof import Suspect, unproven
+from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.staircase import Staircase, StepListener
 from pzt_ident.diagnosis.step import explained_share
+from pzt_ident.diagnosis.suspect import Suspect
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 
 Array = NDArray[np.float64]

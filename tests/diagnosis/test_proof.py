@@ -273,19 +273,6 @@ def test_at_the_noise_too_what_is_in_a_limit_that_is_something_else_is_a_suspect
     assert taken_out(of(none=30, a=left), shapes={"a": [place]}) == []
 
 
-def test_the_limit_is_told():
-    now = fit(1.0, 1.0, ["friction"])
-    item = proof.Suspect("friction", 0.99, 0.98, now, on_bounds=("friction.reach",), limit="a play")
-    assert item.why_not.endswith(
-        "98 % on the validation records, but friction.reach ended at a limit, where the effect is a play."
-    )
-
-
-def test_what_takes_up_nothing_is_told_as_nothing():
-    item = proof.Suspect("friction", -1.47, -0.2, fit(1.0, 1.0, ["friction"]))
-    assert item.why_not.startswith("friction takes up 0 % of the misfit on the identification records and 0 % on")
-
-
 @pytest.mark.parametrize(("left", "share"), [(0.125, 1 / 3), (0.15, 0.4), (0.187, 1 / 2)])
 def test_of_two_that_leave_more_each_must_remove_more_beside_the_other(taken_out, left, share):
     given = 400.0

@@ -10,7 +10,7 @@ from pzt_ident.diagnosis import caveats
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.proof import Suspect
+from pzt_ident.diagnosis.suspect import Suspect
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import load_job
 from pzt_ident.run import findings
