@@ -36,8 +36,8 @@ PROMISING = 0.1  # of the misfit: what is removed at once, with all parameters a
 def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case whose model follows what was before the records, and the fit as given in it, where that removes most of
     the misfit or more than any effect, alone or beside one of the best of these; None elsewhere, and where an effect
-    alone leads to the noise as well, or another one beside it promises nearly all that it leaves; beside one that
-    explains nearly all none that stays far above it. diagnosis: of the fit."""
+    alone leads to the noise as well, of no more parameters if both do, or another one beside it promises nearly all
+    that it leaves; beside one that explains nearly all none that stays far above it. diagnosis: of the fit."""
     if has_history(first) or not has_operator(case):
         return None
     effects = sorted((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total)
@@ -45,7 +45,8 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
     accounted = bool(effects) and share_explained(first.total, effects[0].total, case.floor) >= NEARLY_ALL
     best = beside(case, first, DECISIVE if accounted else PROMISING, rival)
     left = best[1].total if best else first.total
-    if any(adequate(case, first, fit) and removed_rms(fit.total, left) < TIE * case.floor for fit in effects):
+    enough_alone = [fit for fit in effects if adequate(case, first, fit) and not takes_more(case, first, fit, best)]
+    if any(removed_rms(fit.total, left) < TIE * case.floor for fit in enough_alone):
         return None
     share = share_explained(first.total, best[1].total, case.floor) if best else 0.0
     least = DECISIVE if best and any(removed_rms(fit.total, best[1].total) < 0 for fit in effects) else LEAST_SHARE
@@ -57,6 +58,11 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
     level = [fit for fit in effects if not (accounted and is_far_behind(case, fit, effects[0]))]
     behind = (history_behind(case, first, fit, rival) for fit in level[:TRIED])
     return next((found for found in behind if found), None)
+
+
+def takes_more(case: Case, first: Fit, fit: Fit, aged: tuple[Case, Fit] | None) -> bool:
+    """Whether a fit with an effect has more parameters than one that follows what was before and is adequate, too."""
+    return aged is not None and adequate(case, first, aged[1]) and fit.freedom > aged[1].freedom
 
 
 def lead_on(case: Case, first: Fit, effects: Sequence[Fit]) -> bool:

@@ -120,6 +120,23 @@ def test_beside_one_that_explains_nearly_all_what_was_before_is_looked_for_behin
     assert [fit.identify for fit in tried] == [best, other][:looked_for]
 
 
+@pytest.mark.parametrize(
+    ("memory", "aged", "size", "followed"), [(1.06, 1.1, 11, True), (1.06, 1.1, 1, False), (1.06, 2.4, 11, False)]
+)
+def test_of_an_effect_and_what_was_before_that_both_lead_to_the_noise_that_of_fewer_parameters_is_meant(
+    monkeypatch, memory, aged, size, followed
+):
+    """A memory of bent plays, with its ten weights, had been named for records that began in motion."""
+    first, effect = made_fits.fit(2.9, 2.5), made_fits.fit(memory, memory, ["distributed_memory"], size)
+    before = made_fits.CASE, made_fits.fit(aged, aged, [], 3)
+    monkeypatch.setattr(history, "has_history", lambda fit: False)
+    monkeypatch.setattr(history, "has_operator", lambda case: True)
+    monkeypatch.setattr(history, "beside", lambda *arguments: before)
+    monkeypatch.setattr(history, "refit", lambda case, before, effects, guess: before)
+    diagnosis = Diagnosis("missing", "", first, [], [], [Candidate(None, effect)])
+    assert with_history(made_fits.CASE, first, diagnosis) == (before if followed else None)
+
+
 def test_what_was_before_has_the_best_effect_as_a_rival(asked):
     case = begun_in_motion()
     first = first_fit(case, 0)
