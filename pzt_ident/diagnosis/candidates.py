@@ -33,7 +33,7 @@ from pzt_ident.diagnosis.forms import (
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit_from
-from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, scorer_of
+from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import are_look_alikes
@@ -156,13 +156,8 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
     def refitted(candidate: Candidate) -> Candidate:
         some = candidate.forms[0], candidate.score
-        chosen = candidate.forms if candidate.score.effect in in_every_form else some
-        forms = {score.effect: score for score in chosen}
-        fits = {
-            item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
-            for item, score in forms.items()
-        }
-        candidate.refits = from_each_other(case, fits, rival)
+        scores = candidate.forms if candidate.score.effect in in_every_form else some
+        candidate.refits = refit_forms(case, before, scores, rival)
         return candidate
 
     made: list[Candidate] = []
@@ -176,6 +171,13 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     if before is first and made:
         refit_astray(case, first, made)
     return made
+
+
+def refit_forms(case: Case, before: Fit, scores: Sequence[Score], rival: float) -> dict[str, Fit]:
+    """The refits with an effect in the forms of some scores, by item. rival: as of `from_each_other`."""
+    guesses = {score.effect: score.guesses for score in scores}
+    fits = {item: refit_from(case, before, (*before.effects, item), some, rival) for item, some in guesses.items()}
+    return from_each_other(case, fits, rival)
 
 
 def refit_astray(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

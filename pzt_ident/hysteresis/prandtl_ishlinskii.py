@@ -8,6 +8,7 @@ from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
 PLAYS = 8
+STANDING = 1e-13  # V/s, a rate of which no power counts
 
 
 @blocks.register
@@ -81,26 +82,16 @@ class WideningFromRest(Widening):
         return gain, weight, reach * (branch + 1) / PLAYS, 1 - growth(0.0, *terms), *terms
 
 
-class WideningAlike(PrandtlIshlinskii):
+class WideningAlike(Widening):
     """r = r_i + rate reach (|du/dt| / (100 V/s))^order: half-widths that all grow by the same.
 
     Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, where the order is 1.
     """
 
     def prepare(gain, weight, reach, rate, order, branch, dt):
-        return gain, weight, reach * (branch + 1) / PLAYS, *rate_terms(rate * reach * order * log(10), SLOW, order, dt)
-
-    def start(u, gain, weight, half, rate, faster, slow, exponent, root):
-        return max(u - half, min(u + half, 0.0)), u
-
-    def step(p, before, u, gain, weight, half, rate, faster, slow, exponent, root):
-        at_rest = growth(0.0, rate, faster, slow, exponent, root)
-        wide = max(half + growth(abs(u - before), rate, faster, slow, exponent, root) - at_rest, 0.0)
-        p = max(u - wide, min(u + wide, p))
-        return p, u, weight * p
-
-    def output(u, total, gain, weight, half, rate, faster, slow, exponent, root):
-        return gain * u + total
+        share = (branch + 1) / PLAYS
+        terms = rate_terms(rate / share * order * log(10), STANDING, order, dt)
+        return gain, weight, reach * share, 1 - growth(0.0, *terms), *terms
 
 
 PrandtlIshlinskii.forms = {
