@@ -50,7 +50,7 @@ class Shown:
         if not issubclass(self.block, Term):
             return OPERATOR
         holders = [w for w in (OPERATOR, MECHANICS, *blocks.words()) if blocks[w].holds(self.block)]
-        return min(holders, key=lambda word: not blocks[word].tells(self.block))
+        return min(holders, key=lambda word: not blocks[word].distinguishes(self.block))
 
     def _stage(self, items: list[str]) -> Stage:
         return Stage([blocks[item] for item in items], VALUES | self.fixed)

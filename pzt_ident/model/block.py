@@ -134,7 +134,7 @@ class Block:
         return any(declared.effect in (effect.name, effect.item()) for declared in cls.parameters().values())
 
     @classmethod
-    def tells(cls, effect: type[Block]) -> bool:
+    def distinguishes(cls, effect: type[Block]) -> bool:
         """Whether the form of an effect is another one in the equation of the block than its first form."""
         own = {effect.item()} & {*cls.forms, *(declared.effect for declared in cls.parameters().values())}
         return effect.item() == effect.name or bool(own)
