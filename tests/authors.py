@@ -91,7 +91,7 @@ class Pass(Coupling):
     def prepare(ratio):
         return (ratio,)
 
-    def start(other, ratio):
+    def start(y, other, ratio):
         return ()
 
     def step(y, other, ratio):

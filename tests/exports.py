@@ -24,6 +24,7 @@ LONG = [
     "delay bouc_wen_oscillator drift",
     "periodic_disturbance.ripple bouc_wen creep",
     "history bouc_wen lumped",
+    "bouc_wen lumped load_mass cross_coupling.stiffness",
 ]
 
 

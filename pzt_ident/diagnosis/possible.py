@@ -46,10 +46,12 @@ def held_by(case: Case, effects: tuple[str, ...], item: str) -> object:
 
 def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
     """Whether the model with `effects` has what a form of an effect acts in: a block with the term, a second axis, a
-    block that it is ahead of."""
+    block that it is ahead of, the mechanics that it asks."""
     form, chain = blocks[item], blocks.chain((*case.words, *effects))
     if issubclass(form, Term):
         return any(block.holds(form) for block in chain)
     if form.ahead_of is not None and form.ahead_of not in {getattr(block, "place", None) for block in chain}:
         return False
-    return not issubclass(form, Coupling) or len(case.records[0].axes) > 1
+    if not issubclass(form, Coupling):
+        return True
+    return len(case.records[0].axes) > 1 and not (form.of_mechanics and form.mechanics_in(chain) is None)

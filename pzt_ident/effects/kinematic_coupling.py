@@ -25,7 +25,7 @@ class KinematicCoupling(Coupling):
     def prepare(ratio):
         return (ratio,)
 
-    def start(other, ratio):
+    def start(y, other, ratio):
         return ()
 
     def step(y, other, ratio):

@@ -215,6 +215,8 @@ class Program:
         """Add the parameters of a block on an axis or pair of axes from a scratch row on; returns the next row."""
         columns = self.model.columns(block, axis, other)
         constants = {p.name: p.null for p in block.parameters().values() if p.null is not None} | block.numbers()
+        if issubclass(block, Coupling) and block.of_mechanics:
+            columns = (columns or {}) | self.model.columns_of_others(block, axis, other)
         branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
         if issubclass(block, Bank) and block.solved:
             rows = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]

@@ -2,10 +2,10 @@
 
 from math import pi, sqrt
 
-from pzt_ident.mechanics._oscillator import Oscillator, mode
+from pzt_ident.mechanics._oscillator import Oscillator
 from pzt_ident.model.bristles import PLAY, rub, slide, stretched
 from pzt_ident.model.cubic_spring import SOFTEST, beside_spring, cubic_root
-from pzt_ident.model.first_order_hold import oscillate
+from pzt_ident.model.first_order_hold import mode, oscillate
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 

@@ -1,7 +1,8 @@
 """One mass, damper and spring from the data of a rod."""
 
-from pzt_ident.mechanics._oscillator import Oscillator, mode
+from pzt_ident.mechanics._oscillator import Oscillator
 from pzt_ident.mechanics._rod import RodData
+from pzt_ident.model.first_order_hold import mode
 from pzt_ident.model.registry import blocks
 
 

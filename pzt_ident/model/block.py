@@ -8,7 +8,7 @@ branches. The functions are declared without self. The engine compiles them and 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from functools import cache
 from typing import Any, ClassVar
@@ -26,6 +26,8 @@ from pzt_ident.model.elementary import sin as sin
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
 TILES = 3  # signals of an axis: its own, the input of its operator's prompt response, the force on its mechanics
+
+OTHER = "other_"  # before a word that a coupling asks of the other axis
 
 
 class Place(IntEnum):
@@ -332,7 +334,22 @@ class Modes(Block):
 
 class Coupling(Block):
     """Acts across axes: step(*states, y, other, *coefficients) -> (*states, y), once for each other axis; `other` and
-    the first y are the inputs of the block; start(other, *coefficients) -> states under the first input of that axis.
-    There is one set of parameters for each ordered pair of axes."""
+    the first y are the inputs of the block; start(y, other, *coefficients) -> states under the first inputs.
+    There is one set of parameters for each ordered pair of axes.
+
+    prepare may ask for the parameters of the mechanics ahead of it that are `of_mechanics`, and, with `other_` before
+    the word, for those of the mechanics of the other axis and of the same pair the other way round."""
 
     kind = "coupling"
+    of_mechanics: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def mechanics_in(cls, chain: Iterable[type[Block]]) -> type[Block] | None:
+        """The block that has what this one asks of the mechanics; None where there is none."""
+        wanted = set(cls.of_mechanics)
+        return next((block for block in chain if wanted <= set(block.parameters())), None) if wanted else None
+
+    @classmethod
+    def asked_of_others(cls) -> set[str]:
+        """The words that prepare may ask for beside the block's own."""
+        return {*cls.of_mechanics, *(f"{OTHER}{word}" for word in (*cls.of_mechanics, *cls.parameters()))}

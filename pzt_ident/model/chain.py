@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.model.block import Addition, Block, Coupling, Modes, Place, Term, argument_names
+from pzt_ident.model.block import OTHER, Addition, Block, Coupling, Modes, Place, Term, argument_names
 from pzt_ident.model.parameter import Parameter
 
 Array = NDArray[np.float64]
@@ -178,6 +178,16 @@ class Chain:
             elif word in by_word:
                 columns.setdefault(parameter.name, []).append(by_word[word])  # type: ignore[union-attr]
         return columns
+
+    def columns_of_others(self, block: type[Coupling], axis: int, other: int) -> dict[str, int | list[int]]:
+        """Columns of theta that hold what a coupling asks of the mechanics, and of the same pair the other way round,
+        in its words."""
+        host = block.mechanics_in(self.blocks)
+        if host is None:
+            return {}
+        own, there = self.columns(host, axis, axis) or {}, self.columns(host, other, other) or {}
+        there |= self.columns(block, other, axis) or {}
+        return own | {f"{OTHER}{word}": column for word, column in there.items()}
 
     @property
     def _columned(self) -> tuple[Entry, ...]:

@@ -25,6 +25,11 @@ def oscillator(omega, zeta, dt):
     return r11, r12, r21, r22, r11 * lag - r12 * speed - lag, r21 * lag - r22 * speed + speed
 
 
+def mode(mass, damping, stiffness, dt):
+    """Coefficients of a mass on a spring and damper for `oscillate`."""
+    return oscillator(sqrt(stiffness / mass), damping / (2 * sqrt(stiffness * mass)), dt)
+
+
 def trapezoid(omega, zeta, dt):
     """Coefficients by the modified trapezoid rule: Smith et al., Model Development for AFM Stage Mechanisms, eq. 42.
 

@@ -102,3 +102,34 @@ def test_open_loop_errors_of_case_3(sign, x_band, y_band):
     late = np.append(0, wanted[:-1])
     error = response(CHAIN, known, late / known["x.bouc_wen.gain"], late / known["y.bouc_wen.gain"]) - wanted
     assert [error.min(axis=1), error.max(axis=1)] == pytest.approx(np.transpose([x_band, y_band]), abs=8e-3)
+
+
+def test_two_axes_on_one_guide_move_as_their_mass_and_stiffness_matrices_say():
+    """Against a solver of its own, from rest under drives that are not zero; of second order in the step."""
+    mass, stiffness, damping, ratio = (1.2, 0.9), (3e5, 2.6e5), (12.0, 9.0), (0.15, 0.18)
+    known = {"lumped.mass": mass, "lumped.stiffness": stiffness, "lumped.damping": damping}
+    known |= {"cross_coupling.ratio": ratio}
+    named = {
+        f"{axis}.{name}": value for name, values in known.items() for axis, value in zip("xy", values, strict=True)
+    }
+    pace, rate = (
+        [k / m for k, m in zip(stiffness, mass, strict=True)],
+        [b / m for b, m in zip(damping, mass, strict=True)],
+    )
+    system = [
+        [0, 1, 0, 0],
+        [-pace[0], -rate[0], pace[0] * ratio[0], 0],
+        [0, 0, 0, 1],
+        [pace[1] * ratio[1], 0, -pace[1], -rate[1]],
+    ]
+    forces = np.array([[0, 0], [pace[0], 0], [0, 0], [0, pace[1]]])
+    errors = []
+    for dt in (1e-4, 5e-5):
+        time = np.arange(0, 0.4, dt)
+        drives = np.array([40 * np.cos(2 * np.pi * 60 * time), 25 + 10 * np.sin(2 * np.pi * 85 * time)])
+        begun = -np.linalg.solve(system, forces @ drives[:, 0])
+        moved = lsim((system, forces, np.eye(4)[[0, 2]], np.zeros((2, 2))), drives.T, time, X0=begun)[1].T
+        found = response(["lumped", "cross_coupling.stiffness"], named, *drives, dt=dt)
+        errors.append(np.abs(found - moved).max() / np.ptp(moved))
+    assert errors[0] < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)

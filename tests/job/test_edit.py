@@ -206,6 +206,15 @@ def test_what_cannot_be_added_is_not(job, effect, message):
     assert list(path.parent.iterdir()) == [path]
 
 
+def test_a_coupling_through_the_mechanics_needs_them(job):
+    y = '    y: {drive: "u_y [V]"}\n'
+    path = job(JOB.replace(", lumped]", "]").replace(EFFECTS, "").replace("model:", y.lstrip("\n") + "model:", 1))
+    answer = add(path, "cross_coupling.stiffness", "-o", path.with_name("new.yaml"))
+    assert answer.exit_code == 2
+    assert "'cross_coupling.stiffness' acts through the mechanics" in answer.stderr
+    assert "put this into `model`: lumped" in answer.stderr
+
+
 def test_a_term_needs_its_block(job):
     path = job(JOB.replace(", lumped]", "]").replace(EFFECTS, ""))
     answer = add(path, "viscous_damping", "-o", path.with_name("new.yaml"))

@@ -30,7 +30,7 @@ class Turn(Coupling):
     def prepare(size):
         return (size,)
 
-    def start(other, size):
+    def start(y, other, size):
         return ()
 
     def step(y, other, size):

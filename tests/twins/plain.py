@@ -73,14 +73,24 @@ def couple(block, model, record, theta, before):
     for axis, other in permutations(range(len(before)), 2):
         values = parameters(model, block, record, axis, other, theta)
         if values is not None:
-            numbers = asking(block.prepare, values)
-            states, moved = block.start(before[other][0], *numbers), []
+            numbers = asking(block.prepare, values | of_others(model, block, record, axis, other, theta))
+            states, moved = block.start(after[axis][0], before[other][0], *numbers), []
             for y, f in zip(after[axis], before[other], strict=True):
                 result = block.step(*states, y, f, *numbers)
                 *states, y = result if isinstance(result, tuple) else (result,)
                 moved.append(y)
             after[axis] = np.array(moved)
     return after
+
+
+def of_others(model, block, record, axis, other, theta):
+    """What a coupling asks of the mechanics of both axes, and of the same pair the other way round."""
+    host = block.mechanics_in(model.blocks)
+    if host is None:
+        return {}
+    own, there = (parameters(model, host, record, each, each, theta) for each in (axis, other))
+    there |= parameters(model, block, record, other, axis, theta) or {"ratio": [0.0]}
+    return own | {f"other_{word}": value for word, value in there.items()}
 
 
 def together(block, given, first, signals):

@@ -48,7 +48,8 @@ class Fields:
             row += copies * len(words)
         self.weights, self.given = weights, given
         many = {item.name for item in block.parameters().values() if item.count is not None or self.pairs(block)}
-        self.arrays = {*many, *getattr(block, "solved", ())}
+        others = block.asked_of_others() if issubclass(block, Coupling) else ()
+        self.arrays = {*many, *others, *getattr(block, "solved", ())}
         self.cells_from, self.cells = row, layout.rows - row if issubclass(block, Relays) else 0
         self.names = {
             word: group.copies for group in self.groups for word in group.words if not group.given or word in weights

@@ -82,7 +82,9 @@ def try_functions(block: Any) -> dict[str, tuple[Any, ...]]:
 def example(block: Any) -> Known:
     """An example value for each name that the functions of a block may ask for."""
     middle = {word: sum(item.bounds) / 2 for word, item in parameters(block).items()}
-    return EXAMPLE | block.numbers() | dict.fromkeys(getattr(block, "solved", ()), 0.5) | middle
+    solved, others = getattr(block, "solved", ()), block.asked_of_others() if kind_of(block) == "coupling" else ()
+    reverse = {f"other_{word}": value for word, value in middle.items()}
+    return EXAMPLE | block.numbers() | dict.fromkeys(solved, 0.5) | dict.fromkeys(others, 1.0) | reverse | middle
 
 
 def function_of(block: Any, word: str) -> FunctionType:
@@ -198,6 +200,7 @@ def _allowed(block: Any, token: str) -> set[str]:
         return names | set(block.numbers()) | {"branch"}
     names -= set(block.weights) if kind == "modes" else set()
     branch = {"branch"} if kind in BRANCHED else set()
+    names |= block.asked_of_others() if kind == "coupling" else set()
     return names | set(block.numbers()) | set(MEASURED) | branch | set(getattr(block, "solved", ()))
 
 

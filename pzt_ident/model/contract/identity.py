@@ -22,7 +22,7 @@ def check_identity(block: Any) -> None:
         return
     known = example(block) | nulls
     coefficients = call_function(block, "prepare", *(known[name] for name in arguments_of(block, "prepare")))
-    states = call_function(block, "start", DRIVE[0], *coefficients)
+    states = call_function(block, "start", DRIVE[0], *((0.75 * DRIVE[0],) if kind == "coupling" else ()), *coefficients)
     for sample in DRIVE:
         beside = () if kind == "block" else (0.75 * sample,)
         result = call_function(block, "step", *states, sample, *beside, *coefficients)

@@ -45,7 +45,7 @@ KINDS = {
     "addition": {"basis": "t, own parameters -> *amounts", "guess?": "times, drives, residuals, low, high"},
     "modes": PREPARED | {"start": "p, *coefficients -> +states", "step": "*states, p, *coefficients -> *states, q"},
     "coupling": PREPARED
-    | {"start": "other, *coefficients -> *states", "step": "*states, y, other, *coefficients -> *states, y"},
+    | {"start": "y, other, *coefficients -> *states", "step": "*states, y, other, *coefficients -> *states, y"},
 }
 """By kind of block: function name -> "arguments -> results". `?`: the function is optional. `*`: all values of a group,
 as many as the function that returns it returns; `+`: one or more; `(...)`: a tuple of one or more; a comma at the end:
