@@ -17,7 +17,9 @@ HARMONICS = 20  # of the drive, which hysteresis leaves in the residual
 class Line:
     """What all forms of a periodic disturbance declare."""
 
-    form = Form("sine", ("sine", "harmonics", "ripple"), "The course of the disturbance, and where it enters.")
+    form = Form(
+        "sine", ("sine", "harmonics", "odd_harmonics", "ripple"), "The course of the disturbance, and where it enters."
+    )
     frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance, f.", scale="log")
     line = "frequency"
     look_alikes = ()
@@ -94,6 +96,25 @@ class Harmonics(PeriodicDisturbance):
         return enough * s, enough * c, enough * second[0], enough * second[1], enough * third[0], enough * third[1]
 
 
+class OddHarmonics(PeriodicDisturbance):
+    """Mains with its third and fifth harmonic, as saturated transformers and switched supplies make them: y = x + sum_n
+    a_n sin(2 pi n f t) + b_n cos(2 pi n f t), n = 1, 3 and 5.
+
+    Arrillaga & Watson (2003), Power System Harmonics, ch. 3.
+    """
+
+    third_sine, third_cosine = Harmonics.third_sine, Harmonics.third_cosine
+    fifth_sine = Parameter("response", (-1, 1), "Fifth harmonic, in phase at the start.", null=0, per_record=True)
+    fifth_cosine = Parameter("response", (-1, 1), "Fifth harmonic, a quarter period ahead.", null=0, per_record=True)
+
+    def basis(t, frequency, duration):
+        phase, enough = 2 * pi * frequency * t, 1.0 if frequency * duration >= MIN_PERIODS else 0.0
+        s, c = sin(phase), cos(phase)
+        third, fifth = s * (3 - 4 * s * s), s * (5 - 20 * s * s + 16 * s * s * s * s)
+        third_c, fifth_c = c * (4 * c * c - 3), c * (5 - 20 * c * c + 16 * c * c * c * c)
+        return enough * s, enough * c, enough * third, enough * third_c, enough * fifth, enough * fifth_c
+
+
 class Ripple(Line, Block):
     """Ripple of the amplifier's supply adds to the drive, with its third harmonic, and the hysteresis bends it:
     v = u + sum_n a_n sin(2 pi n f t) + b_n cos(2 pi n f t), n = 1 and 3.
@@ -125,4 +146,4 @@ class Ripple(Line, Block):
         return s, c, u + a * s + b * c + third_a * s * (3 - 4 * s * s) + third_b * c * (4 * c * c - 3)
 
 
-PeriodicDisturbance.forms = {"harmonics": Harmonics, "ripple": Ripple}
+PeriodicDisturbance.forms = {"harmonics": Harmonics, "odd_harmonics": OddHarmonics, "ripple": Ripple}

@@ -312,7 +312,7 @@ def rippled_case(dt=2e-3, volts=0.5, frequency=23.0):
 
 def test_a_ripple_that_the_hysteresis_bends_scores_more_than_a_line_on_the_reading():
     case = rippled_case()
-    line, _, ripple = Scorer(case, first_fit(case, 0)).scores("periodic_disturbance")
+    line, *_, ripple = Scorer(case, first_fit(case, 0)).scores("periodic_disturbance")
     assert ripple.guess["periodic_disturbance.frequency"] == pytest.approx(23, abs=0.05)
     assert ripple.explained > 0.9 > line.explained + 0.1
 

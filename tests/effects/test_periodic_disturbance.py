@@ -72,10 +72,11 @@ def rippled(amounts, frequency=20.0, samples=500, dt=1e-3):
     return at_rest.simulate(np.array([[frequency, *amounts]]))[0, 0]
 
 
-def test_mains_may_have_their_second_and_third_harmonic():
+@pytest.mark.parametrize(("form", "orders"), [("harmonics", (1, 2, 3)), ("odd_harmonics", (1, 3, 5))])
+def test_mains_may_have_harmonics(form, orders):
     t = 1e-3 * np.arange(500)
-    found = np.transpose([blocks["periodic_disturbance.harmonics"].basis(each, 20.0, t[-1]) for each in t])
-    waves = [wave(2 * np.pi * n * 20 * t) for n in (1, 2, 3) for wave in (np.sin, np.cos)]
+    found = np.transpose([blocks[f"periodic_disturbance.{form}"].basis(each, 20.0, t[-1]) for each in t])
+    waves = [wave(2 * np.pi * n * 20 * t) for n in orders for wave in (np.sin, np.cos)]
     np.testing.assert_allclose(found, waves, atol=1e-12)
 
 
