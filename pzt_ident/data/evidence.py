@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.periods import period_of
-from pzt_ident.data.projections import MOST_MEMORY, ROUNDING, deviation, memory_of, without_lines
+from pzt_ident.data.projections import (
+    MOST_MEMORY,
+    ROUNDING,
+    deviation,
+    expected_products,
+    memory_of,
+    without_lines,
+)
+from pzt_ident.data.quantiser import errors_of_readings
 from pzt_ident.data.stretches import rests
 
 Array = NDArray[np.float64]
@@ -22,6 +33,7 @@ FARTHEST = 4.0  # standard deviations of an estimate, by which it may be above t
 AS_LOUD = 1.25  # times those: the noise of a sensor may be as much larger elsewhere in its range
 FEWEST = 0.05  # of all that is measured: less, which is quieter than the rest, may be a reading that hung
 LONG, SHORT = 100, 24  # samples of a rest in which lines are told from noise, and of those that count together
+ROUNDS = 3  # in which rests that are of the noise alone are told from others
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 
@@ -79,21 +91,73 @@ def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDAr
     return order
 
 
-def rest_noise(drive: Array, response: Array) -> list[Estimate]:
-    """The noise of each rest: of the last four fifths of an interval of constant drive, or of less where these still
-    settle, less a quartic, which follows creep, and the lines of the mains and the floor; none of a short rest in which
-    the reading hangs."""
-    estimates = []
+@dataclass(frozen=True)
+class Rest:
+    """What is left of a rest, and the orthonormal basis of what was taken off, (samples, columns)."""
+
+    noise: Array
+    basis: Array
+
+    @cached_property
+    def products(self) -> tuple[float, float]:
+        """The sum of the squares, and that of the products of each sample and the next."""
+        return float(self.noise @ self.noise), float(self.noise[1:] @ self.noise[:-1])
+
+    @cached_property
+    def memory(self) -> float:
+        """That of its noise, as far as the rest shows it."""
+        return common_memory([self])
+
+    @property
+    def is_short(self) -> bool:
+        return self.noise.size < LONG
+
+    def estimate(self, least: float = 0.0) -> Estimate:
+        """The noise. least: the memory that it has at least if the rest is short."""
+        memory = max(self.memory, least) if self.is_short else self.memory
+        power = self.products[0]
+        value = (power / expected_products(self.basis, memory)[0]) ** 0.5 if power else 0.0
+        free = 2 * (self.noise.size - self.basis.shape[1]) * (1 - memory**2) / (1 + memory**2)
+        return Estimate(value, self.noise.size, free**-0.5)
+
+
+def still_rests(drive: Array, response: Array) -> list[Rest]:
+    """The last four fifths of each interval of constant drive, or less where these still settle, less a quartic, which
+    follows creep, and the lines of the mains and the floor; none of a short rest in which the reading hangs."""
+    found = []
     for first, last in rests(drive):
         first += (last - first) // 5
-        if last - first >= SHORT:
-            noise, basis = settled(response[first:last])
-            memory = memory_in(noise, basis)
-            moves = last - first >= LONG or np.ptp(response[first:last]) > 0
-            if moves and memory < MOST_MEMORY:  # what rings or settles is more alike from sample to sample
-                free = 2 * (noise.size - basis.shape[1]) * (1 - memory**2) / (1 + memory**2)
-                estimates.append(Estimate(deviation(noise, basis), noise.size, free**-0.5))
-    return estimates
+        if last - first >= SHORT and (last - first >= LONG or np.ptp(response[first:last]) > 0):
+            rest = Rest(*settled(response[first:last]))
+            if rest.memory < MOST_MEMORY:  # what rings or settles is more alike from sample to sample
+                found.append(rest)
+    return found
+
+
+def common_memory(found: Sequence[Rest]) -> float:
+    """The memory of the noise of rests; zero where nothing is left of them."""
+    power, alike = np.sum([rest.products for rest in found], axis=0)
+    return memory_of(alike / power, *(rest.basis for rest in found)) if power > 0 else 0.0
+
+
+def rest_noise(found: Sequence[Rest], seconds: Array, step: float) -> list[Estimate]:
+    """The noise of each rest. Short ones have the memory of those that are of the noise alone: they show less of it,
+    and noise with a memory is quieter in them."""
+
+    def alone(estimates: list[Estimate]) -> NDArray[np.bool_]:
+        values, spreads = np.array([(part.value, part.spread) for part in estimates]).T
+        return of_one_noise(errors_of_readings(values, seconds, step), seconds, spreads)
+
+    if not any(rest.is_short for rest in found):
+        return [rest.estimate() for rest in found]
+    estimates, memory = [rest.estimate(common_memory(found)) for rest in found], 0.0
+    if alone(estimates).all():
+        return estimates
+    for _ in range(ROUNDS):
+        estimates = [rest.estimate(memory) for rest in found]
+        kept = [rest for rest, is_noise in zip(found, alone(estimates), strict=True) if is_noise]
+        memory = max(memory, common_memory(kept))
+    return [rest.estimate(memory) for rest in found]
 
 
 def settled(signal: Array) -> tuple[Array, Array]:
@@ -104,12 +168,6 @@ def settled(signal: Array) -> tuple[Array, Array]:
     if half >= LONG and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
         return settled(signal[half:])
     return noise, basis
-
-
-def memory_in(noise: Array, basis: Array) -> float:
-    """The memory of noise that a basis has been projected out of; zero where nothing is left."""
-    power = float(noise @ noise)
-    return memory_of(float(noise[1:] @ noise[:-1]) / power, basis) if power > 0 else 0.0
 
 
 def period_noise(drive: Array, response: Array, least: int = 3) -> list[Estimate]:

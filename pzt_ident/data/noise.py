@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ from pzt_ident.data.evidence import (
     period_noise,
     quiet_deviation,
     rest_noise,
+    still_rests,
 )
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
@@ -82,27 +82,22 @@ def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | N
 def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
     """By rests; where all of them are short, so that they may hold lines, by what is quieter of these and the stage in
     motion. None where there are fewer than LONG samples of them."""
-    found = estimates(signals, rest_noise)
-    longest = max((part.samples for part, _ in found), default=0)
-    if sum(part.samples for part, _ in found) < LONG:
+    rests = [(rest, dt) for drives, response, dt in signals for rest in still_rests(drives, response)]
+    if sum(rest.noise.size for rest, _ in rests) < LONG:
         return None
-    still = floor_by(found, "rest segments", signals, step)
-    return still if longest >= LONG else min(still, floor_in_motion(signals, step))
+    seconds = np.array([rest.noise.size * dt for rest, dt in rests])
+    parts = rest_noise([rest for rest, _ in rests], seconds, step)
+    still = floor_by([(part, dt) for part, (_, dt) in zip(parts, rests, strict=True)], "rest segments", signals, step)
+    short = all(rest.is_short for rest, _ in rests)
+    return min(still, floor_in_motion(signals, step)) if short else still
 
 
 def floor_in_motion(signals: list[Signal], step: float) -> Floor:
     """By repeated periods, else by two of them or in short windows."""
-    found = estimates(signals, period_noise)
+    found = [(part, dt) for drives, response, dt in signals for part in period_noise(drives, response)]
     if found:
         return floor_by(found, "repeated periods", signals, step)
     return min(floor_of_two_periods(signals, step), floor_in_windows(signals, step))
-
-
-def estimates(
-    signals: list[Signal], estimate: Callable[[Array, Array], list[Estimate]]
-) -> list[tuple[Estimate, float]]:
-    """Those of all records, each with its sample time."""
-    return [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
 
 
 def floor_by(found: list[tuple[Estimate, float]], source: str, signals: list[Signal], step: float) -> Floor:

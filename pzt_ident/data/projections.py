@@ -26,13 +26,13 @@ def deviation(noise: Array, basis: Array) -> float:
     return float(np.sqrt(power / expected_products(basis, memory_of(alike / power, basis))[0]))
 
 
-def memory_of(alike: float, basis: Array) -> float:
+def memory_of(alike: float, *bases: Array) -> float:
     """Memory of first order of noise that is so alike from sample to sample after a basis has been projected out of it,
-    or bases out of windows of it."""
+    or bases out of parts of it."""
 
     def excess(memory: float) -> float:
-        power, beside = expected_products(basis, memory)
-        return beside / power - alike
+        power, beside = np.sum([expected_products(basis, memory) for basis in bases], axis=0)
+        return float(beside / power - alike)
 
     if excess(0.0) >= 0:
         return 0.0

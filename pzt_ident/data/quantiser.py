@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 PART = 128  # samples
+FEW = 8  # steps
 MOST_OF_TWO = 0.51  # of a step: what is read at two values scatters by half a step at most
 
 
@@ -28,7 +29,16 @@ def common_step(responses: list[Array]) -> float:
         part for response in responses for part in (response, *np.split(response, range(PART, response.size, PART)))
     ]
     steps = [step for step in map(quantiser_step, parts) if step]
-    return min(steps) if steps and all(is_on_grid(response, min(steps)) for response in responses) else 0.0
+    step = refined(min(steps), responses) if steps else 0.0
+    return step if step and all(is_on_grid(response, step) for response in responses) else 0.0
+
+
+def refined(step: float, responses: list[Array]) -> float:
+    """A step by all gaps of a few: readings that were written in so many digits tell a single one only so well."""
+    gaps = np.concatenate([np.diff(np.unique(response)) for response in responses])
+    counts = np.round(gaps / step)
+    few = counts <= FEW
+    return float(gaps[few].sum() / counts[few].sum()) if counts[few].any() else step
 
 
 def is_on_grid(response: Array, step: float) -> bool:

@@ -57,3 +57,11 @@ def test_several_rests_tell_the_noise_beside_a_quantiser_in_the_median(scatter):
     read = np.std(np.round(places + rng.normal(0, scatter, (200, rests, 400))), axis=2)
     errors = [quiet_deviation(errors_of_readings(each, np.ones(rests), 1.0), np.ones(rests)) for each in read]
     assert np.median(errors) == pytest.approx(np.hypot(scatter, 1 / np.sqrt(12)), rel=0.03)
+
+
+def test_readings_of_few_digits_are_on_one_grid():
+    """A gap of 4.71 nm, as six digits of 12 um tell it, is wrong by a step within 1,300 of them."""
+    step, stroke = 4.7093751e-9, np.linspace(0, 12.5e-6, 6000)
+    readings = np.round(np.append(np.zeros(300), stroke) / step + np.random.default_rng(2).normal(0, 0.2, 6300)) * step
+    written = np.array([float(f"{value:.6g}") for value in readings * 1e6]) * 1e-6
+    assert common_step([written]) == pytest.approx(step, rel=1e-4)
