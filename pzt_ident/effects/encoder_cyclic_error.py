@@ -1,6 +1,6 @@
 """Error of an encoder with the period of its grating."""
 
-from math import pi
+from math import pi, sqrt
 
 from pzt_ident.model.block import Block, Place, cos, sin
 from pzt_ident.model.parameter import Form, Parameter
@@ -15,7 +15,11 @@ class EncoderCyclicError(Block):
     """
 
     place = Place.SENSOR
-    form = Form("first", ("first", "second", "rezeroed"), "Up to which harmonic of the grating, and from which zero.")
+    form = Form(
+        "first",
+        ("first", "second", "elliptic", "rezeroed"),
+        "Up to which harmonic of the grating, and from which zero.",
+    )
     trials = {"pitch": 120}
     line = "pitch"
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0, a.", null=0)
@@ -60,6 +64,38 @@ class SecondHarmonic(EncoderCyclicError):
         return u + sine * a + cosine * (b - 1) + 2 * second_sine * a * b - 2 * second_cosine * a * a
 
 
+class Elliptic(SecondHarmonic):
+    """Two signals that are an ellipse beside the origin, read by the angle: y = x + (arg w(x) - arg w(0)) p / 2 pi,
+    w = 1 + o exp(-i theta) + k exp(-2 i theta), theta = 2 pi x / p; o are their offsets, k is from unequal gains and a
+    phase that is no quarter of a period. To first order the error is that with two harmonics.
+
+    Heydemann (1981), Applied Optics 20, 3382.
+    """
+
+    def prepare(sine, cosine, second_sine, second_cosine, pitch):
+        wave = 2 * pi / pitch
+        beside, oval = (-wave * sine, wave * cosine), (-wave * second_sine, wave * second_cosine)
+        return *beside, *oval, angle_of(1 + beside[0] + oval[0], beside[1] + oval[1]), wave
+
+    def start(u, along, across, oval, skew, begun, wave):
+        return ()
+
+    def step(u, along, across, oval, skew, begun, wave):
+        a, b = sin(wave * u), cos(wave * u)
+        c, d = 2 * a * b, b * b - a * a
+        real = 1 + along * b + across * a + oval * d + skew * c
+        return u + (angle_of(real, across * b - along * a + skew * d - oval * c) - begun) / wave
+
+
+def angle_of(x, y):
+    """arg(x + i y): of an eighth of it by the series of the arc tangent, to 1e-11 up to a right angle."""
+    half = y / (x + sqrt(x * x + y * y))
+    quarter = half / (1 + sqrt(1 + half * half))
+    t = quarter / (1 + sqrt(1 + quarter * quarter))
+    s = t * t
+    return 8 * t * (1 - s * (1 / 3 - s * (1 / 5 - s * (1 / 7 - s * (1 / 9 - s * (1 / 11 - s / 13))))))
+
+
 class Rezeroed(EncoderCyclicError):
     """The encoder is set to zero, or the stage clamped anew, before each record r, which begins at another place on the
     grating: y = x + a_r sin(2 pi x / p) + b_r (cos(2 pi x / p) - 1).
@@ -74,4 +110,4 @@ class Rezeroed(EncoderCyclicError):
     pitch = Parameter("response", (0.01, 0.25), "Period of the grating's signal, p.", scale="log")
 
 
-EncoderCyclicError.forms = {"second": SecondHarmonic, "rezeroed": Rezeroed}
+EncoderCyclicError.forms = {"second": SecondHarmonic, "elliptic": Elliptic, "rezeroed": Rezeroed}

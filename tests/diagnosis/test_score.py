@@ -212,7 +212,7 @@ def test_other_forms_of_an_effect_with_many_shapes_are_tried_where_the_first_exp
     """What is tried near the shapes of the first form scores as if all were tried."""
     case = stage.with_response(stage.case(), lambda r: 20e-9 * np.sin(1e6 * np.pi * r.response))
     scorer = Scorer(case, first_fit(case, 0))
-    first, other, _ = scorer.scores("encoder_cyclic_error")
+    first, other, *_ = scorer.scores("encoder_cyclic_error")
     problem, tried = case.problem((other.effect,)), blocks[other.effect].trials
     counts = [
         len(list(planned_trials(other.effect, problem, scorer.fit.values, tried, near))) for near in ((), first.shapes)

@@ -37,3 +37,26 @@ def test_an_encoder_that_is_set_to_zero_anew_has_a_phase_of_its_own_in_each_reco
         found = simulator.amounts.complete(theta)[0, 1:]
         np.testing.assert_allclose(found, [0.03 * np.cos(phase), 0.03 * np.sin(phase)], atol=1e-8)
         assert simulator.squares(theta)[0, 0] < 1e-12 * np.square(measured).sum()
+
+
+def test_two_signals_on_an_ellipse_are_read_by_their_angle():
+    """Offsets, unequal gains and a phase that is no quarter of a period, read by atan2; to first order the error has two
+    harmonics."""
+    pitch, x = 0.5, np.linspace(-3, 3, 4000)
+    theta = 2 * np.pi * x / pitch
+    for size in (0.6, 0.05):
+        offset, gain, phase = size * (0.2 - 0.3j), 1 + 0.5 * size, 0.4 * size
+        signals = np.cos(theta) + offset.real, gain * np.sin(theta + phase) + offset.imag
+        mean = (1 + gain * np.exp(1j * phase)) / 2  # of the circle beside which the ellipse is
+        beside, oval = offset / mean, (1 - gain * np.exp(-1j * phase)) / 2 / mean
+        known = dict(zip(("sine", "cosine"), (-beside.real, beside.imag), strict=True))
+        known |= dict(zip(("second_sine", "second_cosine"), (-oval.real, oval.imag), strict=True))
+        known = {word: value * pitch / (2 * np.pi) for word, value in known.items()} | {"pitch": pitch}
+        named = {f"encoder_cyclic_error.{word}": value for word, value in known.items()}
+        angle = np.unwrap(np.arctan2(*signals[::-1]))
+        expected = angle * pitch / (2 * np.pi)
+        found = response(["encoder_cyclic_error.elliptic"], named, x)
+        np.testing.assert_allclose(found - found[2000], expected - expected[2000], atol=1e-11)
+        by_harmonics = response(["encoder_cyclic_error.second"], named, x)
+        assert np.abs(by_harmonics - found).max() < size**2 * pitch / (2 * np.pi)
+    np.testing.assert_allclose(response(["encoder_cyclic_error.elliptic"], named, np.zeros(3)), 0, atol=1e-15)
