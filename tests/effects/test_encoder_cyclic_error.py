@@ -40,8 +40,7 @@ def test_an_encoder_that_is_set_to_zero_anew_has_a_phase_of_its_own_in_each_reco
 
 
 def test_two_signals_on_an_ellipse_are_read_by_their_angle():
-    """Offsets, unequal gains and a phase that is no quarter of a period, read by atan2; to first order the error has two
-    harmonics."""
+    """Offsets, unequal gains and a phase that is no quarter of a period, read by atan2."""
     pitch, x = 0.5, np.linspace(-3, 3, 4000)
     theta = 2 * np.pi * x / pitch
     for size in (0.6, 0.05):
