@@ -24,6 +24,7 @@ class Rubbing:
             "motion",
             "coulomb_motion",
             "slip",
+            "elastoplastic",
         ),
         "The law of friction, and where it acts.",
     )
@@ -231,6 +232,19 @@ class Slip(Rubbing, Term):
     solvable = False
 
 
+class Elastoplastic(Rubbing, Term):
+    """Bristles of the guide only bend at first, then slide, as the mass moves: m x'' + b x' + k (x + F) = k f,
+    dF/dx = sliding / bend while F sgn x' < elastic g, beyond it (sliding / bend) (g - F sgn x') / (g - elastic g),
+    g = sliding (1 + excess exp(-(x' / fading)^2)).
+
+    Dupont, Hayward, Armstrong & Altpeter (2002), IEEE Trans. Autom. Control 47, 787, with a straight transition. Unlike
+    LuGre's, it does not drift under a force that stays below.
+    """
+
+    trials = {"elastic": 2, "fading": 1}
+    solvable = False
+
+
 Friction.forms = {
     "lugre_viscous": LuGreViscous,
     "commanded": Commanded,
@@ -240,4 +254,5 @@ Friction.forms = {
     "motion": Motion,
     "coulomb_motion": CoulombMotion,
     "slip": Slip,
+    "elastoplastic": Elastoplastic,
 }

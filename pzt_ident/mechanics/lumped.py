@@ -3,7 +3,7 @@
 from math import pi, sqrt
 
 from pzt_ident.mechanics._oscillator import Oscillator
-from pzt_ident.model.bristles import PLAY, rub, slide, stretched
+from pzt_ident.model.bristles import PLAY, bend_and_slide, rub, slide, stretched
 from pzt_ident.model.cubic_spring import SOFTEST, beside_spring, cubic_root
 from pzt_ident.model.first_order_hold import mode, oscillate
 from pzt_ident.model.parameter import Parameter
@@ -80,6 +80,33 @@ class Lumped(Oscillator):
         end="upper",
     )
 
+    sliding = Parameter(
+        "response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.elastoplastic"
+    )
+    bend = Parameter(
+        "response",
+        (1e-3, 0.5),
+        "Sliding friction over the stiffness of the bristles.",
+        scale="log",
+        effect="friction.elastoplastic",
+        limit=PLAY,
+        small_to="sliding",
+    )
+    elastic = Parameter(
+        "1", (0, 0.95), "Share of the friction up to which bristles only bend.", effect="friction.elastoplastic"
+    )
+    excess = Parameter(
+        "1", (0, 0.5), "Excess of the break-away force, as a share.", null=0, effect="friction.elastoplastic"
+    )
+    fading = Parameter(
+        "response/s",
+        (1e-3, 100),
+        "Speed at which that excess has faded.",
+        scale="log",
+        effect="friction.elastoplastic",
+        end="both",
+    )
+
     begun = Parameter(
         "response", (-1, 1), "Displacement from that at rest as a record begins.", 0, effect="history", per_record=True
     )
@@ -153,6 +180,45 @@ class RubbingAndStiffening(Rubbing):
         x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held, cubic, 1 + b1)
         share = beside_spring(x, before, cubic, 1 + b1)
         friction = rub(held, x - before, force, reach, stiction, fast, share)
+        x = x - share * (friction - held)
+        now = u - x * max(cubic * x * x, -SOFTEST) - friction
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, friction, now + w
+
+
+class BendingAndSliding(Lumped):
+    """m x'' + b x' + k (x + F) = k f, likewise, F of bristles that only bend at first."""
+
+    def prepare(mass, damping, stiffness, load, extra_damping, sliding, bend, elastic, excess, fading, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return sliding, bend, excess, elastic, 1 / (fading * dt), *linear
+
+    def start(u, force, reach, stiction, elastic, fast, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u, 0.0
+
+    def step(w, v, f, held, u, force, reach, stiction, elastic, fast, r11, r12, r21, r22, b1, b2):
+        x = u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held
+        friction = bend_and_slide(held, x - f - w, force, reach, stiction, elastic, fast, 1 + b1)
+        now = u - friction
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, friction, now + w
+
+
+class BendingSlidingAndStiffening(BendingAndSliding):
+    """The same under a spring that stiffens, which enters a step of friction as its chord."""
+
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, sliding, bend, elastic, excess, fading, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return cubic, sliding, bend, excess, elastic, 1 / (fading * dt), *linear
+
+    def start(u, cubic, force, reach, stiction, elastic, fast, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
+
+    def step(w, v, f, held, u, cubic, force, reach, stiction, elastic, fast, r11, r12, r21, r22, b1, b2):
+        before = f + w
+        x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held, cubic, 1 + b1)
+        share = beside_spring(x, before, cubic, 1 + b1)
+        friction = bend_and_slide(held, x - before, force, reach, stiction, elastic, fast, share)
         x = x - share * (friction - held)
         now = u - x * max(cubic * x * x, -SOFTEST) - friction
         w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
@@ -261,12 +327,14 @@ class Moving(Lumped):
 
 
 Rubbing.joint = {"cubic_stiffness": RubbingAndStiffening}
+BendingAndSliding.joint = {"cubic_stiffness": BendingSlidingAndStiffening}
 Sliding.joint = {"cubic_stiffness": SlidingAndStiffening}
 Slipping.joint = {"cubic_stiffness": SlippingAndStiffening}
 Lumped.forms = {
     "friction.motion": Rubbing,
     "friction.coulomb_motion": Sliding,
     "friction.slip": Slipping,
+    "friction.elastoplastic": BendingAndSliding,
     "cubic_stiffness": Stiffening,
     "history": Moving,
 }

@@ -3,6 +3,7 @@ that stretch, then slip (Maxwell)."""
 
 from pzt_ident.model.elementary import expm1, log1p, rough_log
 
+TINY = 1e-300  # a friction of nothing has no stiffness
 PLAY = "a play, as a backlash between stage and sensor is"  # friction that does not give before it slides
 
 
@@ -25,15 +26,32 @@ def rub(friction, pull, force, reach, stiction, fast, share):
     per = 1 / (reach * level)
     push = move * per
     gap = force / reach - sign * friction * per
-    slack = share * gap
+    return sign * level * (force - reach * gap * left(push, share * gap))
+
+
+def bend_and_slide(friction, pull, force, reach, stiction, elastic, fast, share):
+    """The same with bristles that only bend up to a share `elastic` of g: dF/dx = force / reach as long as F sgn dx is
+    less, beyond it force / reach (g - F sgn dx) / (g - elastic g)."""
+    sign = 1.0 if pull >= 0 else -1.0
+    move = abs(pull)
+    most = force * (1 + stiction * (1 + expm1(-move * fast * move * fast)))
+    stiff = force / reach
+    line = min(move, max(elastic * most - sign * friction, 0.0) * (1 + share * stiff) / max(stiff, TINY))
+    bent = sign * friction + stiff * line / (1 + share * stiff)
+    per = stiff / max((1 - elastic) * most, TINY)
+    gap = most - bent
+    return sign * (most - gap * left((move - line) * per, share * gap * per))
+
+
+def left(push, slack):
+    """exp(-d) at the root of d + slack (1 - exp(-d)) = push."""
     above = 1 + max(slack - push, 0.0)
     d = max(push - slack, rough_log(1 + max(min(push, slack), 0.0) / above))
     d += halley_step(d, expm1(-d), slack, push)
     d += halley_step(d, expm1(-d), slack, push)
     bent = expm1(-d)
     last = halley_step(d, bent, slack, push)
-    left = (1 + bent) * (1 - last * (1 - last / 2))
-    return sign * level * (force - reach * gap * left)
+    return (1 + bent) * (1 - last * (1 - last / 2))
 
 
 def halley_step(d, bent, slack, push):

@@ -225,6 +225,55 @@ def test_slowly_driven_elements_are_plays_of_the_displacement(spacing):
     assert np.ptp(force - x) == pytest.approx(2 * SLIP)
 
 
+ELASTIC = {"sliding": 0.3, "bend": 0.2, "elastic": 0.5, "excess": 0.0, "fading": 1.0, "cubic": 0.0}
+
+
+def bending(force, dt, **law):
+    return response(["lumped"], STAGE | {f"lumped.{word}": x for word, x in (ELASTIC | law).items()}, force, dt=dt)
+
+
+def slope_of_bristles(pull, way, level, sliding, bend, elastic):
+    """dF/dx in the direction `way`: that of bristles which only bend, or slide more and more."""
+    along = way * pull
+    return sliding / bend * np.minimum(1, (level - along) / (level * (1 - elastic)))
+
+
+def bent(force, dt, **law):
+    """m x'' + b x' + k (x + c x^3 + F) = k f, integrated."""
+    known = ELASTIC | law
+    sliding, bend, elastic = (known[word] for word in ("sliding", "bend", "elastic"))
+
+    def change(f, x, v, pull):
+        level = sliding * (1 + known["excess"] * math.exp(-((v / known["fading"]) ** 2)))
+        push = STIFFNESS * (f - x - known["cubic"] * x**3 - pull)
+        way = 1.0 if v >= 0 else -1.0
+        return v, (push - DAMPING * v) / MASS, v * float(slope_of_bristles(pull, way, level, sliding, bend, elastic))
+
+    return stepped(change, (force[0], 0.0, 0.0), force, dt)
+
+
+@pytest.mark.parametrize(
+    "law", [{}, {"cubic": 2e-3}, {"excess": 0.3, "fading": 2e3}, {"elastic": 0.0}, {"elastic": 0.9, "bend": 1.0}]
+)
+def test_a_chirp_moves_bristles_that_only_bend_at_first_as_the_equation_of_motion_says(law):
+    errors = errors_under_a_chirp(partial(bending, **law), partial(bent, **law), 2e-5, 1e-5)
+    assert errors[1] < 3e-3
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_slowly_driven_bristles_bend_on_a_line_then_slide_exponentially():
+    force = path(0, 8, -3, points=400)
+    x = bending(force, 1.0)
+    pull = force - x
+    assert np.ptp(pull) == pytest.approx(0.6, rel=1e-6)
+    line = pull[:400] < 0.15
+    np.testing.assert_allclose(pull[:400][line], 1.5 * x[:400][line], rtol=0, atol=1e-7)
+    beyond = (x[:400] - 0.1)[~line]
+    np.testing.assert_allclose(pull[:400][~line], 0.3 - 0.15 * np.exp(-beyond / 0.1), rtol=0, atol=1e-6)
+    small = path(0, 0.2, 0.1, 0.2, -0.2, points=50)
+    np.testing.assert_allclose(bending(small, 1.0), small / 2.5, rtol=0, atol=1e-7)
+
+
 def test_a_reversal_within_the_reach_leaves_a_closed_loop():
     x = slipping(path(0, 8, 7.7, 8, 9, points=400), 1.0)
     assert x[1200] == pytest.approx(x[400], abs=1e-7)
@@ -247,6 +296,7 @@ def test_friction_and_a_bent_spring_are_in_one_equation():
         {"dry": 0.3, "speed": 2.0},
         {"dry": 0.3, "speed": 0.01},
         {"slip": SLIP, "give": 0.4, "spacing": 0.5},
+        {"sliding": 0.3, "bend": 0.2, "elastic": 0.5, "excess": 0.2, "fading": 1.0},
     ],
 )
 def test_friction_alone_is_friction_beside_a_spring_that_does_not_bend(law):
