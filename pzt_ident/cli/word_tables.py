@@ -14,9 +14,9 @@ Facts = dict[str, Any]
 
 SAYINGS = {"Leaves much the same trace as": "look_alikes", "To tell": "separate_by", "To do": "remedy"}
 UNITS = """\
-Numbers in units of drive and response are multiples of the largest peak-to-peak value of a record to
-identify; in a job they are in volts and micrometres, or what the files have. Bounds of response/drive
-have either sign where the response does not rise with the drive."""
+Bounds in units of drive or response are declared in the largest peak-to-peak value of a record to identify:
+over 100 V, 0 to 60 1/drive is 0 to 0.6 1/V. A job has the units of its files; `pzt-ident check JOB` prints
+its bounds in these. Those of response/drive have either sign where the response does not rise with the drive."""
 
 
 def show_word(facts: Facts) -> None:

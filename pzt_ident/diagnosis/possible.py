@@ -6,6 +6,8 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.model.block import Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
 
+NO_TERM = "no block of this model has a term for such an effect, and `pzt-ident show` tells which have"
+
 
 def applicable(case: Case, effects: tuple[str, ...], in_setup: bool = False) -> list[str]:
     """The effects of the stage that can be added to this model, which has `effects`, or the faults of its set-up."""
@@ -16,7 +18,7 @@ def applicable(case: Case, effects: tuple[str, ...], in_setup: bool = False) -> 
 
 def out_of_place(case: Case) -> dict[str, list[str]]:
     """The effects of which no form can act in this model, by the reason."""
-    found: dict[str, list[str]] = {"no block of this model has a term for it": [], "there is no second axis": []}
+    found: dict[str, list[str]] = {NO_TERM: [], "there is no second axis": []}
     reasons = [*found]
     for word in blocks.effects():
         forms = [blocks[item] for item in blocks.forms(word)]

@@ -27,9 +27,9 @@ class Channels:
 
 @dataclass(frozen=True)
 class Setting:
-    """What is known of a parameter, one of the two, in the user's units.
+    """What is known of a parameter, in the units of the files; without either it is searched within declared bounds.
 
-    bounds: between which it is searched. value: at which it is fixed.
+    bounds: between which it is searched. value: at which it is fixed instead.
     """
 
     bounds: tuple[float, float] | None = None

@@ -91,7 +91,8 @@ def description_of(name: str) -> Facts:
     """What a block, effect, optimizer or parameter declares. Raises InputError for an unknown one, with what may be
     meant."""
     word, _, last = name.rpartition(".")
-    if word in blocks and last in {row["name"] for row in _parameters(blocks[word])}:
+    is_form = word in blocks and blocks.is_effect(word) and name in blocks.forms(word)
+    if word in blocks and not is_form and last in {row["name"] for row in _parameters(blocks[word])}:
         rows = [row for row in _parameters(blocks[word]) if row["name"] == last]
         return {"name": name, "kind": "parameter", "doc": headline(blocks[word]), "parameters": rows}
     if word_of(name) in blocks:

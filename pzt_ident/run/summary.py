@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.data.noise import WEAK, noise_floor
+from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
-from pzt_ident.diagnosis.possible import out_of_place
+from pzt_ident.diagnosis.possible import applicable, out_of_place
 from pzt_ident.job.schema import Job
 from pzt_ident.model.block import Modes
 from pzt_ident.run.identify import tasks_of
@@ -29,7 +30,7 @@ def summary_of(job: Job) -> Facts:
     whatever is wrong with its data."""
     statement = Statement(job)
     records, problem = statement.records, statement.problem
-    tasks = tasks_of(statement, job.folder)
+    tasks, case = tasks_of(statement, job.folder), case_of(statement)
     axes = [_axis(records, axis) for axis in range(len(records[0].axes))]
     return {
         "name": job.name,
@@ -41,12 +42,14 @@ def summary_of(job: Job) -> Facts:
         "notes": [
             *far_off(problem),
             *_products(problem),
+            *_ratios(problem),
             *_weak_floors(axes),
             *_unmeasured(axes),
             *_all_fitted(records),
             *_cut_in_motion(job, records, problem),
         ],
-        "out_of_place": out_of_place(case_of(statement)),
+        "nameable": applicable(case, case.effects),
+        "out_of_place": out_of_place(case),
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),
     }
@@ -98,6 +101,15 @@ def _products(problem: Problem) -> Iterator[str]:
     modes = next((block.name for block in problem.model.blocks if issubclass(block, Modes)), None)
     for _, entry in free_gains(problem) if modes else ():
         yield f"{entry.name} and the shapes of {modes} are known only as products: give {entry.name} a `value`"
+
+
+def _ratios(problem: Problem) -> Iterator[str]:
+    """A sentence on each oscillator of which the mass is free beside damping and stiffness."""
+    for mass in (name for name in problem.names if name.endswith(".mass")):
+        others = [mass.removesuffix("mass") + word for word in ("damping", "stiffness")]
+        if set(others) <= set(problem.names):
+            names = listed([mass, *others])
+            yield f"of {names} the data hold two ratios, whatever the mass is: give {mass} a `value`"
 
 
 def _weak_floors(axes: list[Facts]) -> Iterator[str]:

@@ -1,11 +1,19 @@
 """What is told of a word is what its forms declare."""
 
+from inspect import getdoc
+
 import pytest
 
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import Term
 from pzt_ident.model.description import description_of
 from pzt_ident.model.registry import blocks
+
+
+@pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
+def test_each_form_is_told_with_its_equation(item):
+    found = description_of(item)
+    assert (found["kind"], found["doc"]) == ("effects", getdoc(blocks[item]))
 
 
 @pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
@@ -22,8 +30,10 @@ def test_each_form_is_told_with_its_own_bounds_and_value(item):
 
 
 def test_each_parameter_is_told_by_its_name_in_a_job():
+    """But for one that is a form of its block, too."""
     for block in blocks:
-        for name in block.parameters():
+        forms = blocks.forms(block.name) if blocks.is_effect(block.name) else []
+        for name in (name for name in block.parameters() if f"{block.name}.{name}" not in forms):
             found = description_of(f"{block.name}.{name}")
             assert {row["name"] for row in found["parameters"]} == {name}, (block.name, name)
 

@@ -7,6 +7,7 @@ import pytest
 
 import stage
 from pzt_ident.job.schema import load_job
+from pzt_ident.model.registry import blocks
 from pzt_ident.run.summary import summary_of
 
 
@@ -36,8 +37,15 @@ def test_a_gain_in_another_unit_is_asked_about(tmp_path, bounds, told):
     [("value: 156.6", True), ("value: 0.1566", False), ("bounds: [100, 200]", True), ("bounds: [5, 15]", False)],
 )
 def test_a_mass_in_another_unit_is_asked_about(tmp_path, setting, told):
-    notes = notes_of(tmp_path, "[bouc_wen, lumped]", f"{{lumped.mass: {{{setting}}}}}")
+    notes = notes_of(tmp_path, "[bouc_wen, lumped]", f"{{lumped.mass: {{{setting}}}, lumped.damping: {{value: 9}}}}")
     assert [note.startswith("lumped.mass is 1") for note in notes] == [True] * told
+
+
+@pytest.mark.parametrize(("setting", "told"), [("bounds: [0.5, 2]", True), ("value: 1", False)])
+def test_a_mass_that_is_free_beside_damping_and_stiffness_is_told(tmp_path, setting, told):
+    notes = notes_of(tmp_path, "[bouc_wen, lumped]", f"{{lumped.mass: {{{setting}}}}}")
+    sentence = "of lumped.mass, lumped.damping and lumped.stiffness the data hold two ratios, whatever the mass is"
+    assert [note.startswith(sentence) for note in notes] == [True] * told
 
 
 @pytest.mark.parametrize(("setting", "told"), [("bounds: [0.05, 0.1]", True), ("value: 0.08", False)])
@@ -91,8 +99,13 @@ def test_a_record_that_is_cut_out_in_motion_is_told_unless_the_job_says_what_was
 def test_what_a_diagnosis_cannot_name_is_told_with_the_reason(tmp_path):
     """A term that another block has, and a coupling of one axis; not what the job rules out."""
     job = stage.JOB + "rule_out: [kinematic_coupling]\n"
-    told = summary_of(load_job(stage.write(tmp_path, stage.records({}), job)))["out_of_place"]
-    assert told == {
-        "no block of this model has a term for it": ["load_mass", "viscous_damping"],
+    told = summary_of(load_job(stage.write(tmp_path, stage.records({}), job)))
+    assert told["out_of_place"] == {
+        "no block of this model has a term for such an effect, and `pzt-ident show` tells which have": [
+            "load_mass",
+            "viscous_damping",
+        ],
         "there is no second axis": ["cross_coupling"],
     }
+    others = ["load_mass", "viscous_damping", "cross_coupling", "kinematic_coupling", "backlash"]
+    assert {*told["nameable"], *others} == {*blocks.effects()} and not {*told["nameable"]} & {*others}

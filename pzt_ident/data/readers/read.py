@@ -95,8 +95,10 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
     part = time_slice(grid, rows, source.time, where)
     first = drives[0].first if drives[0] else 0
     _check_length(part, source, grid.dt, where)
-    for response in filter(None, responses):
-        _check_not_constant(response.cut(part).complete())
+    moves = [drive is None or _moves(drive, part) for drive in drives]
+    for moved, response in zip(moves, responses, strict=True):
+        if response and (moved or not any(moves)):
+            _check_not_constant(response.cut(part).complete())
     record = Record(
         name=source.name or Path(source.file).stem,
         use=source.use,
@@ -139,9 +141,13 @@ def _check_length(part: slice, source: Source, dt: float, where: str) -> None:
         raise InputError(problem, where=where, remedy="shorten it")
 
 
+def _moves(drive: Signal, part: slice) -> bool:
+    return bool(np.ptp(drive.cut(part).complete().values))
+
+
 def _check_not_constant(response: Signal) -> None:
     if np.ptp(response.values) == 0:
-        problem = f"the response is constant ({response.values[0]:g} in SI units)"
+        problem = f"the response is constant ({response.values[0] + 0.0:g} in SI units)"
         raise InputError(problem, where=response.where, remedy="is it the right column, and was the sensor connected?")
 
 

@@ -190,6 +190,20 @@ def test_constant_response_is_an_error_and_constant_drive_is_not(tmp_path, read,
     assert "the response is constant (-0.0003172" in problem(path).message
 
 
+@pytest.mark.parametrize(("parked", "is_read"), [("0", True), ("{i}", False)])
+def test_an_axis_that_is_held_while_another_moves_may_have_a_constant_response(tmp_path, parked, is_read):
+    header = "t [s],u [V],v [V],x [um],y [um]\n"
+    path = write(tmp_path, *(f"{i},{parked},{i * i},-0,{i}".format(i=i) for i in range(5)), header=header)
+    axes = {name: Axis(Channel(name=drive), Channel(name=name)) for name, drive in (("x", "u"), ("y", "v"))}
+    source = Source(file=path.name, use="identify")
+    if is_read:
+        (record,) = read_records([source], axes, Channel(name="t"), tmp_path)
+        assert not record.response[0].any()
+        return
+    with pytest.raises(InputError, match=r"the response is constant \(0 in SI units\)"):
+        read_records([source], axes, Channel(name="t"), tmp_path)
+
+
 def test_the_shortest_record(tmp_path, read, problem):
     assert read(write(tmp_path, *ROWS[:3])).samples == 3
     assert "has 2 samples, at least 3" in problem(write(tmp_path, *ROWS[:2])).message
