@@ -68,7 +68,7 @@ def fault_instead(case: Case, first: Fit) -> Staircase | None:
     at_noise = [(word, fit) for word, fit in faults_of(case, first) if adequate(case, first, fit)]
     if not at_noise:
         return None
-    word, fit = min(at_noise, key=lambda account: account[1].total)
+    word, fit = simplest(case, at_noise)
     diagnosis = diagnose(case, first)
     if any(item.fit and stands_beside(case, fit, item.fit) for item in diagnosis.candidates):
         return None
@@ -83,6 +83,14 @@ def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:
     if mended is None:
         return diagnosis
     return replace(mended.last, reason=f"{mended.last.reason} {mended.suspects[0].why_not}")
+
+
+def simplest(case: Case, accounts: list[tuple[str, Fit]]) -> tuple[str, Fit]:
+    """The account with the fewest parameters of those that leave hardly more than the best. A dead zone that ends
+    beyond the largest command is a supply that is reached."""
+    best = min((fit for _, fit in accounts), key=lambda fit: fit.total)
+    close = [account for account in accounts if not leaves_less(case, best, account[1])]
+    return min(close, key=lambda account: (account[1].freedom, account[1].total))
 
 
 def stands_beside(case: Case, fit: Fit, other: Fit) -> bool:
@@ -115,7 +123,7 @@ def without_outdone(case: Case, staircase: Staircase) -> Staircase:
     ]
     if not accounts:
         return staircase
-    word, fit = min(accounts, key=lambda account: account[1].total)
+    word, fit = simplest(home, accounts)
     staircase.suspects = [
         *(replace(suspect(home, first, end, item, (word,)), strangers=(word,)) for item in added),
         *staircase.suspects,
