@@ -19,7 +19,9 @@ class DistributedMemory(Plays):
     """
 
     place = Place.READOUT
-    form = Form("plays", ("plays", "fine_plays", "bent_plays", "two_plays"), "How many plays, and what each adds.")
+    form = Form(
+        "plays", ("plays", "fine_plays", "stops", "bent_plays", "two_plays"), "How many plays, and what each adds."
+    )
     refines = ("prandtl_ishlinskii",)
     branches = PLAYS
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
@@ -44,6 +46,21 @@ class FinePlays(DistributedMemory):
 
     def prepare(weight, reach, branch):
         return weight, reach * (branch + 1) / (2 * PLAYS)
+
+
+class Stops(DistributedMemory):
+    """Elastic elements that slip take part of the prompt response back, and of a long stroke nothing: y = d (u - sum_i
+    w_i (u - F_i[u])) - h, stops of half-width r_i = reach i / 10.
+
+    Maxwell slip elements: Goldfarb & Celanovic (1997), IEEE Control Syst. Mag. 17, 69. A stop is what a play leaves of
+    its input, so that these are plays beside another gain: d is that of a long stroke, not of a small one.
+    """
+
+    weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th stop over the gain.", null=0, count=PLAYS)
+
+    def step(p, u, weight, half):
+        p = max(u - half, min(u + half, p))
+        return p, weight * (p - u)
 
 
 class BentPlays(DistributedMemory):
@@ -94,4 +111,4 @@ class TwoPlays(DistributedMemory):
         return weight, reach if branch else reach * inner
 
 
-DistributedMemory.forms = {"fine_plays": FinePlays, "bent_plays": BentPlays, "two_plays": TwoPlays}
+DistributedMemory.forms = {"fine_plays": FinePlays, "stops": Stops, "bent_plays": BentPlays, "two_plays": TwoPlays}

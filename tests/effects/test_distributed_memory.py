@@ -18,6 +18,13 @@ def test_alone_it_is_the_drive_and_its_plays():
     np.testing.assert_allclose(response(["distributed_memory"], WEIGHED, DRIVE), expected, rtol=0, atol=1e-12)
 
 
+def test_stops_are_what_plays_leave_of_the_drive_and_keep_the_gain_of_a_long_stroke():
+    found = response(["distributed_memory.stops"], WEIGHED, DRIVE)
+    plays = prandtl_ishlinskii(DRIVE, 0.0, WEIGHTS, REACH * np.arange(1, PLAYS + 1) / PLAYS)
+    np.testing.assert_allclose(found, DRIVE * (1 - WEIGHTS.sum()) + plays, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(np.diff(found)[40:59], np.diff(DRIVE)[40:59], rtol=1e-12)
+
+
 def test_it_adds_to_the_prompt_response_and_leaves_the_memory():
     alone = response(["distributed_memory"], WEIGHED, DRIVE)
     both = response(["bouc_wen", "distributed_memory"], KNOWN | WEIGHED, DRIVE)
