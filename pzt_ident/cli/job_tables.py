@@ -34,7 +34,8 @@ def show_job(facts: Facts) -> None:
     )
     for note in facts["notes"]:
         click.echo(note)
-    click.echo(f"a diagnosis may name {listed(facts['nameable'])}")
+    faults = f", and as faults of the set-up {listed(facts['faults'])}" if facts["faults"] else ""
+    click.echo(f"a diagnosis may name {listed(facts['nameable'])}{faults}")
     for reason, words in facts["out_of_place"].items():
         click.echo(f"no diagnosis names {listed(words)}: {reason}")
     click.echo(f"runs: {' '.join(facts['runs'])}, {facts['evaluations']} evaluations in all")

@@ -16,7 +16,8 @@ SAYINGS = {"Leaves much the same trace as": "look_alikes", "To tell": "separate_
 UNITS = """\
 Bounds in units of drive or response are declared in the largest peak-to-peak value of a record to identify:
 over 100 V, 0 to 60 1/drive is 0 to 0.6 1/V. A job has the units of its files; `pzt-ident check JOB` prints
-its bounds in these. Those of response/drive have either sign where the response does not rise with the drive."""
+its bounds in these. A gain, and what an operator puts out, has either sign where the response does not rise
+with the drive."""
 
 
 def show_word(facts: Facts) -> None:

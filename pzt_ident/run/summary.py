@@ -49,6 +49,7 @@ def summary_of(job: Job) -> Facts:
             *_cut_in_motion(job, records, problem),
         ],
         "nameable": applicable(case, case.effects),
+        "faults": applicable(case, case.effects, in_setup=True),
         "out_of_place": out_of_place(case),
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
+from pzt_ident.model.block import Place
 from pzt_ident.model.chain import Chain, Entry
 
 Array = NDArray[np.float64]
@@ -28,10 +29,13 @@ def unit_of(model: Chain, entry: Entry, record: Record) -> str:
 
 
 def bounds_of(model: Chain, entry: Entry, records: Sequence[Record]) -> Array:
-    """Declared bounds in SI units; those of a gain include the other sign, unless the response clearly rises with the
-    drive: an inverting amplifier reverses the sign, and so does a drive above the resonance."""
+    """Declared bounds in SI units; those of a gain, or of what an operator puts out at most, include the other sign,
+    unless the response clearly rises with the drive: an inverting amplifier reverses the sign, and so does a drive
+    above the resonance."""
     low, high = entry.parameter.bounds
-    if entry.parameter.unit == "response/drive" and drive_correlation(list(records), entry.axis) <= CLEAR:
+    puts_out = entry.parameter.unit == "response" and entry.block.place == Place.OPERATOR
+    turns = entry.parameter.unit == "response/drive" or puts_out
+    if turns and drive_correlation(list(records), entry.axis) <= CLEAR:
         low, high = min(low, -high), max(high, -low)
     return np.array([low, high]) * size_of(model, entry, records)
 

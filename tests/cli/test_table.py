@@ -34,8 +34,17 @@ def test_a_range_has_no_negative_zero(capsys):
     axis |= {"response_unit": "um", "response_range": [-0.0, 11.56]}
     facts = {"name": "j", "hash": "0", "model": [], "records": [], "axes": [axis], "parameters": [], "notes": []}
     lacking = {"there is no second axis": ["cross_coupling", "kinematic_coupling"]}
-    show_job(facts | {"runs": [], "evaluations": 0, "nameable": ["creep", "delay"], "out_of_place": lacking})
+    show_job(
+        facts
+        | {
+            "runs": [],
+            "evaluations": 0,
+            "nameable": ["creep", "delay"],
+            "faults": ["backlash", "clipping"],
+            "out_of_place": lacking,
+        }
+    )
     said = capsys.readouterr().out
     assert "0 to 150 V" in said and "0 to 11.56 um" in said and "-0" not in said
-    assert "a diagnosis may name creep and delay" in said
+    assert "a diagnosis may name creep and delay, and as faults of the set-up backlash and clipping" in said
     assert "no diagnosis names cross_coupling and kinematic_coupling: there is no second axis" in said

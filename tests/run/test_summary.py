@@ -108,4 +108,5 @@ def test_what_a_diagnosis_cannot_name_is_told_with_the_reason(tmp_path):
         "there is no second axis": ["cross_coupling"],
     }
     others = ["load_mass", "viscous_damping", "cross_coupling", "kinematic_coupling", *blocks.faults()]
+    assert told["faults"] == blocks.faults()
     assert {*told["nameable"], *others} == {*blocks.effects()} and not {*told["nameable"]} & {*others}

@@ -175,13 +175,26 @@ def turned(records, word):
         yield problem, problem.loss(polish(problem, found.point)[0])[0]
 
 
-@pytest.mark.parametrize("word", ["bouc_wen", "prandtl_ishlinskii"])
-def test_an_inverting_stage_is_identified_as_well_as_an_upright_one(word):
+@pytest.mark.parametrize(("word", "apart"), [("bouc_wen", 1e-3), ("prandtl_ishlinskii", 1e-3), ("domain_wall", 1e-2)])
+def test_an_inverting_stage_is_identified_as_well_as_an_upright_one(word, apart):
+    """Domain walls are another model than that of the stage, and have minima beside each other."""
     _, records = made(["bouc_wen"], TRUTH, noise=2e-8)
     (upright, loss), (inverting, turned_loss) = turned(records, word)
-    assert turned_loss == pytest.approx(loss, rel=1e-3)
+    assert turned_loss == pytest.approx(loss, rel=apart)
     assert upright.lower[0] == 0
     assert inverting.lower[0] == pytest.approx(-inverting.upper[0])
+
+
+@pytest.mark.parametrize("word", [word for word in blocks.words() if blocks.folder(word) == "hysteresis"])
+def test_every_operator_may_be_turned_round(word):
+    """By a parameter of its output that is searched within bounds of either sign, or else is solved for."""
+    _, records = made(["bouc_wen"], TRUTH, noise=2e-8)
+    records = [dataclasses.replace(record, response=-record.response) for record in records]
+    problem = Problem(Chain([blocks[word]], ["x"], [0]), records)
+    declared = [problem.model.entries[column].parameter for column in problem.free]
+    turns = [item.unit in ("response", "response/drive") and item.bounds[0] >= 0 for item in declared]
+    assert any(turns)
+    assert (problem.lower[turns] < 0).all() and np.allclose(problem.lower[turns], -problem.upper[turns])
 
 
 def test_a_constant_drive_is_no_scale():
