@@ -13,7 +13,7 @@ class Asymmetry(Term):
     the operator times alpha d.
     """
 
-    form = Form("voltage", ("voltage", "constant", "branches"), "What is easier in one direction.")
+    form = Form("voltage", ("voltage", "constant", "polynomial", "branches"), "What is easier in one direction.")
     look_alikes = ("quadratic_gain", "creep")
     separate_by = "Cycle one loop until it has settled and compare one branch with the other rotated by 180 degrees."
     remedy = "Invert the asymmetric operator in the feedforward, or work on one branch only."
@@ -23,6 +23,13 @@ class Constant(Asymmetry):
     """One direction is easier at every voltage: dh/dt <- dh/dt + delta |du/dt|.
 
     Zhu & Wang (2012), Sens. Actuators A 181, 51, with a constant in the place of u; delta is `lean` times alpha d.
+    """
+
+
+class Polynomial(Asymmetry):
+    """It changes with the voltage along a curve: dh/dt <- dh/dt + alpha d (skew u + skew_2 u^2 + skew_3 u^3) |du/dt|.
+
+    Zhu & Wang (2012), Sens. Actuators A 181, 51, with the next powers of u, as of an exponential or of what levels off.
     """
 
 
@@ -37,4 +44,4 @@ class Branches(Asymmetry):
     trials = {"centre": 8}
 
 
-Asymmetry.forms = {"constant": Constant, "branches": Branches}
+Asymmetry.forms = {"constant": Constant, "polynomial": Polynomial, "branches": Branches}

@@ -16,7 +16,9 @@ class RateDependence(Term):
     alpha absorbs it.
     """
 
-    form = Form("logarithm", ("logarithm", "onset", "power", "alike"), "How the hysteresis grows with the rate.")
+    form = Form(
+        "logarithm", ("logarithm", "onset", "power", "level", "alike"), "How the hysteresis grows with the rate."
+    )
     look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
     separate_by = "Repeat one loop at rates two decades apart, and a small amplitude at the fastest."
     remedy = "Run at the rate that the model was identified at, or schedule the feedforward on the rate."
@@ -44,6 +46,18 @@ class Power(RateDependence):
     trials = {"exponent": 4}
 
 
+class Level(RateDependence):
+    """The growth levels off: alpha <- alpha (1 + rate 4 / log 10 (x / (1 + x) - x1 / (1 + x1))), x = |du/dt| / level,
+    x1 that of 100 V/s; `rate` is the growth per decade at the level.
+
+    Relaxation of first order, whose loss is half developed at one rate: Ang, Khosla & Riviere (2007), IEEE/ASME Trans.
+    Mechatronics 12, 134, has its logarithm about that rate. Half-widths of plays are those at rest times 1 + rate 4 /
+    log 10 x / (1 + x).
+    """
+
+    trials = {"level": 6}
+
+
 class Alike(RateDependence):
     """All half-widths of plays grow by the same: r_i <- r_i + rate r_8 x^p, x = |du/dt| / (100 V/s), p being `order`.
 
@@ -54,4 +68,4 @@ class Alike(RateDependence):
     trials = {"order": 3}
 
 
-RateDependence.forms = {"onset": Onset, "power": Power, "alike": Alike}
+RateDependence.forms = {"onset": Onset, "power": Power, "level": Level, "alike": Alike}

@@ -17,8 +17,9 @@ class BoucWen(Operator):
     r = beta + gamma where q > 0.
 
     Effects, each without influence at zero:
-    dh/dt = alpha d (1 + rate L) du/dt + (asymmetry u + lean) alpha d |du/dt| - ... - relaxation h,
-    L = log10((|du/dt| + onset) / (100 V/s + onset)), or (10^(exponent L) - 1) / (exponent log 10).
+    dh/dt = alpha d (1 + rate L) du/dt + (lean + asymmetry u + skew_2 u^2 + skew_3 u^3) alpha d |du/dt| - ...
+    - relaxation h,
+    L = log10((|du/dt| + onset) / (100 V/s + onset)), or (10^(exponent L) - 1) / (exponent log 10), or what levels off.
     Over a step the factors on du/dt keep their value in the middle, and h relaxes after it: second order in the step,
     first order in dt * relaxation.
     """
@@ -39,6 +40,12 @@ class BoucWen(Operator):
         "V/s", (SLOW, FASTEST), "Drive rate at which alpha begins to grow.", SLOW, "log", effect="rate_dependence.onset"
     )
     exponent = Parameter("1", (-0.5, 0.5), "Power of the drive rate.", 0, effect="rate_dependence.power")
+    level = Parameter(
+        "V/s", (SLOW, FASTEST), "Drive rate at half of the growth.", FASTEST, "log", effect="rate_dependence.level"
+    )
+    skew = Parameter("1/drive", (-2, 2), "Part that grows with the voltage.", 0, effect="asymmetry.polynomial")
+    skew_2 = Parameter("1/drive^2", (-4, 4), "Part that grows with its square.", 0, effect="asymmetry.polynomial")
+    skew_3 = Parameter("1/drive^3", (-8, 8), "Part that grows with its cube.", 0, effect="asymmetry.polynomial")
     beta_2 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x du).", 0, effect="asymmetry.branches")
     beta_3 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x h).", 0, effect="asymmetry.branches")
     beta_4 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(du).", 0, effect="asymmetry.branches")
@@ -66,14 +73,40 @@ class BoucWen(Operator):
     def output(h, u, gain, slope):
         return gain * u - slope * h
 
-    def terms(asymmetry, lean, rate, onset, exponent, relaxation, activation, dt):
-        return asymmetry, lean, *rate_terms(rate, onset, exponent, dt), exp(-dt * relaxation), activation
+    def terms(asymmetry, lean, skew, skew_2, skew_3, rate, onset, exponent, level, relaxation, activation, dt):
+        return (
+            asymmetry + skew,
+            lean,
+            skew_2,
+            skew_3,
+            *rate_terms(rate, onset, exponent, level, dt),
+            exp(-dt * relaxation),
+            activation,
+        )
 
-    def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
-        grown = growth(distance, rate, faster, slow, exponent, root)
-        return max(1 + sign * (asymmetry * u + lean) + grown, 0.01)
+    def lift(
+        distance,
+        u,
+        sign,
+        asymmetry,
+        lean,
+        square,
+        cube,
+        rate,
+        faster,
+        slow,
+        exponent,
+        root,
+        per,
+        share,
+        keep,
+        activation,
+    ):
+        grown = growth(distance, rate, faster, slow, exponent, root, per, share)
+        lean = lean + u * (asymmetry + u * (square + u * cube))
+        return max(1 + sign * lean + grown, 0.01)
 
-    def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
+    def fade(h, asymmetry, lean, square, cube, rate, faster, slow, exponent, root, per, share, keep, activation):
         return keep
 
 
@@ -104,7 +137,7 @@ class Activated(BoucWen):
     Eyring (1936), J. Chem. Phys. 4, 283. `activation` is one over the h at which the rate has grown by 1.2.
     """
 
-    def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
+    def fade(h, asymmetry, lean, square, cube, rate, faster, slow, exponent, root, per, share, keep, activation):
         x = min(activation * abs(h), 40.0)
         grown = expm1(x)
         left = keep * grown / (grown + 2)

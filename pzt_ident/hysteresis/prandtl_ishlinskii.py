@@ -33,6 +33,9 @@ class PrandtlIshlinskii(Bank):
         "V/s", (SLOW, FASTEST), "Drive rate at which they begin to grow.", SLOW, "log", effect="rate_dependence.onset"
     )
     exponent = Parameter("1", (0, 1), "Power of the drive rate.", 0, effect="rate_dependence.power")
+    level = Parameter(
+        "V/s", (SLOW, FASTEST), "Drive rate at half of the growth.", FASTEST, "log", effect="rate_dependence.level"
+    )
     order = Parameter("1", (0.2, 2), "Power of the drive rate.", 1, effect="rate_dependence.alike")
 
     def threshold(reach, branch):
@@ -59,26 +62,26 @@ class Widening(PrandtlIshlinskii):
     Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, with the law of rate of Bouc-Wen here.
     """
 
-    def prepare(gain, weight, reach, rate, onset, exponent, branch, dt):
-        return gain, weight, reach * (branch + 1) / PLAYS, 1.0, *rate_terms(rate, onset, exponent, dt)
+    def prepare(gain, weight, reach, rate, onset, exponent, level, branch, dt):
+        return gain, weight, reach * (branch + 1) / PLAYS, 1.0, *rate_terms(rate, onset, exponent, level, dt)
 
-    def start(u, gain, weight, half, least, rate, faster, slow, exponent, root):
+    def start(u, gain, weight, half, least, rate, faster, slow, exponent, root, per, share):
         return max(u - half, min(u + half, 0.0)), u
 
-    def step(p, before, u, gain, weight, half, least, rate, faster, slow, exponent, root):
-        wide = half * max(least + growth(abs(u - before), rate, faster, slow, exponent, root), 0.01)
+    def step(p, before, u, gain, weight, half, least, rate, faster, slow, exponent, root, per, share):
+        wide = half * max(least + growth(abs(u - before), rate, faster, slow, exponent, root, per, share), 0.01)
         p = max(u - wide, min(u + wide, p))
         return p, u, weight * p
 
-    def output(u, total, gain, weight, half, least, rate, faster, slow, exponent, root):
+    def output(u, total, gain, weight, half, least, rate, faster, slow, exponent, root, per, share):
         return gain * u + total
 
 
 class WideningFromRest(Widening):
     """Half-widths that are r_i at rest: r = r_i (1 + rate (L - L(0)))."""
 
-    def prepare(gain, weight, reach, rate, onset, exponent, branch, dt):
-        terms = rate_terms(rate, onset, exponent, dt)
+    def prepare(gain, weight, reach, rate, onset, exponent, level, branch, dt):
+        terms = rate_terms(rate, onset, exponent, level, dt)
         return gain, weight, reach * (branch + 1) / PLAYS, 1 - growth(0.0, *terms), *terms
 
 
@@ -90,7 +93,7 @@ class WideningAlike(Widening):
 
     def prepare(gain, weight, reach, rate, order, branch, dt):
         share = (branch + 1) / PLAYS
-        terms = rate_terms(rate / share * order * log(10), STANDING, order, dt)
+        terms = rate_terms(rate / share * order * log(10), STANDING, order, FASTEST, dt)
         return gain, weight, reach * share, 1 - growth(0.0, *terms), *terms
 
 
@@ -98,5 +101,6 @@ PrandtlIshlinskii.forms = {
     "rate_dependence.alike": WideningAlike,
     "rate_dependence.onset": WideningFromRest,
     "rate_dependence.power": WideningFromRest,
+    "rate_dependence.level": WideningFromRest,
     "rate_dependence": Widening,
 }

@@ -27,6 +27,22 @@ def test_without_forgetting_both_directions_add_to_it(skew):
     np.testing.assert_allclose(memory(drive, skew), expected, rtol=1e-13, atol=1e-12)
 
 
+def test_along_a_curve_both_directions_add_to_it():
+    """h = u + p(u) on the way up and, from U on, u + 2 p(U) - p(u) on the way down, p' = skew u + ... + skew_3 u^3, to
+    second order in the step."""
+    skew, errors = np.array([5e-3, -4e-5, 3e-7]), []
+    for points in (50, 100):
+        drive = path(0, 80, 0, points=points)
+        known = {"gain": GAIN, "alpha": ALPHA, "beta": 0.0, "gamma": 0.0}
+        known |= dict(zip(("skew", "skew_2", "skew_3"), skew, strict=True))
+        found = response(["bouc_wen"], {f"bouc_wen.{word}": value for word, value in known.items()}, drive)
+        grown = (drive[:, None] ** [2, 3, 4] / [2, 3, 4]) @ skew
+        expected = drive + np.where(np.arange(drive.size) <= points, grown, 2 * grown[points] - grown)
+        errors.append(np.abs((GAIN * drive - found) / (ALPHA * GAIN) - expected).max())
+    assert errors[0] < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
+
+
 def test_with_forgetting_it_is_of_second_order_in_the_step():
     """dh/du = 1 + skew u - r h from zero: h = (1 + skew u) / r - skew / r^2 - (1 / r - skew / r^2) exp(-r u)."""
     rate, skew, errors = 0.05, 4e-3, []

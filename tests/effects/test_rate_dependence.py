@@ -21,6 +21,7 @@ FORMS = [
     ({}, decades),
     ({"bouc_wen.onset": 30.0}, lambda speed: decades(speed, 30)),
     ({"bouc_wen.exponent": 0.4}, lambda speed: (10 ** (0.4 * decades(speed)) - 1) / (0.4 * np.log(10))),
+    ({"bouc_wen.level": 30.0}, lambda speed: 4 / np.log(10) * (speed / (speed + 30) - 100 / (100 + 30))),
     ({"bouc_wen.exponent": -0.3}, lambda speed: (10 ** (-0.3 * decades(speed)) - 1) / (-0.3 * np.log(10))),
 ]
 
@@ -59,6 +60,15 @@ def test_standing_is_not_without_bounds():
 
 
 PLAYS = {f"prandtl_ishlinskii.weight_{i}": 0.01 * i for i in range(1, 9)} | {"prandtl_ishlinskii.gain": 0.05}
+
+
+@pytest.mark.parametrize("speed", [1e-9, 0.1, 50.0, 4e4])
+def test_half_widths_that_level_off(speed):
+    """From rest they grow by 0.1 4 / log 10 at most: on a branch a play is u less its half-width."""
+    words = {"prandtl_ishlinskii.rate": 0.1, "prandtl_ishlinskii.level": 50.0, "prandtl_ishlinskii.reach": 40.0}
+    found = response(["prandtl_ishlinskii"], PLAYS | words, path(0, 100, points=100), dt=1 / speed)
+    wider = 5.0 * np.arange(1, 9) * (1 + 0.4 / np.log(10) * speed / (speed + 50))
+    assert found[-1] == pytest.approx(0.05 * 100 + 0.01 * np.arange(1, 9) @ (100 - wider), rel=1e-9)
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0])
