@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
+from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.undetermined import mechanics_of
@@ -24,7 +25,7 @@ FAR_OFF = 2.0  # times the loss of the identification records: what a record lea
 AS_WELL = 1.1  # of the loss: parameters that fit the identification records as well
 OPEN = 0.5  # of the error of a record: what it varies by with such parameters where the others leave it open
 DRAWS = 240  # points along the directions of the curvature, each as far as the loss grows little
-DRAWS_SOLVED = 60  # the same where each costs a solution for what the response is linear in
+DRAWS_SOLVED = 60  # the same where each costs a solution for what the response is linear in, or for what was before
 
 
 def judged(case: Case, fit: Fit) -> tuple[Case, Fit]:
@@ -48,7 +49,7 @@ def left_open(case: Case, fit: Fit) -> list[Record]:
     errors = errors_by_record(case, fit, kept, fit.point[None])[:, 0]
     limit = FAR_OFF * max(fit.identify, case.floor)
     far = [record for record, error in zip(kept, errors, strict=True) if limit < error < np.inf]
-    if not far:
+    if not far or not case.budget.allows("which records can judge", WHOLE):
         return []
     errors = errors_by_record(case, fit, far, np.vstack([fit.point, as_good(fit)]))
     spread = np.nan_to_num(errors, nan=np.inf).max(axis=1) - errors.min(axis=1)
@@ -63,7 +64,7 @@ def as_good(fit: Fit) -> Array:
     growth = np.sqrt(AS_WELL**2 - 1) * fit.identify
     lengths = np.minimum(growth / np.maximum(sizes, np.finfo(float).tiny), 1.0)
     rng = np.random.default_rng(0)
-    draws = DRAWS_SOLVED if fit.problem.linear.columns.size else DRAWS
+    draws = DRAWS_SOLVED if fit.problem.linear.columns.size or fit.problem.model.amounts else DRAWS
     parts, any_place = rng.uniform(-1, 1, size=(draws, lengths.size)), rng.uniform(size=(draws, fit.point.size))
     near = np.clip(fit.point + parts * lengths @ directions, 0, 1)
     points = np.vstack([near, np.where(np.isin(fit.problem.free, [*mechanics_of(fit)]), any_place, fit.point)])
