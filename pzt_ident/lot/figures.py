@@ -25,6 +25,7 @@ FRAME = Frame(top=4, left=12, bottom=8, down=13)
 ROW = 34.0  # mm
 USUAL, FAR_OFF = "#5b86a8", str(MODEL["color"])
 MOST = 12  # panels of what depends on what
+SEEN = 3.0  # times as far as chance takes one of the devices: what is farther is drawn at the rim
 NAMED = 6  # devices that a bar names
 
 
@@ -36,7 +37,7 @@ def plates(lot: Lot) -> Iterator[Plate]:
             "spreads",
             "spreads",
             "Number of devices by the value of each quantity that their data determine. Shaded: as far as chance takes "
-            "one of so many devices. Marked below: devices out of line.",
+            "one of so many devices. Marked below: devices out of line; an arrow at a rim stands for those beyond it.",
             partial(_height, count=len(shown)),
             partial(_draw_spreads, lot=lot, shown=shown),
             bars(lot, shown),
@@ -48,7 +49,7 @@ def plates(lot: Lot) -> Iterator[Plate]:
             "columns",
             "What depends on a column of the table, strongly or weakly, where chance gives any such trend or "
             "difference in one lot of twenty: the lines are medians of slopes (Theil-Sen), the strokes medians of "
-            "groups. Devices out of line are marked.",
+            "groups. Devices out of line are marked, by an arrow at a rim where they are beyond it.",
             partial(_height, count=len(pairs)),
             partial(_draw_columns, lot=lot, pairs=pairs),
         )
@@ -76,6 +77,15 @@ def _far(lot: Lot, quantity: Quantity) -> np.ndarray:
     return np.array([row["device"] in names for row in lot.done])
 
 
+def _window(lot: Lot, quantity: Quantity) -> tuple[float, float]:
+    """What is shown of a quantity: a device far off, such as one with a wrong unit, does not hide the others."""
+    values, half = quantity.values[quantity.usable], SEEN * lot.reach(quantity) * quantity.spread
+    low, high = float(np.min(values)), float(np.max(values))
+    if _is_wide(quantity) or not half > 0:
+        return low, high
+    return max(low, quantity.median - half), min(high, quantity.median + half)
+
+
 def bars(lot: Lot, shown: Sequence[Quantity]) -> dict[str, dict[str, str]]:
     """What a page makes of each panel and of each of its bars: buttons that tell their devices, and between which
     values these lie."""
@@ -83,10 +93,11 @@ def bars(lot: Lot, shown: Sequence[Quantity]) -> dict[str, dict[str, str]]:
     names = np.array([row["device"] for row in lot.done])
     for place, quantity in enumerate(shown):
         parts[f"panel-{place}"] = {"role": "group", "aria-label": f"Devices by {quantity.name}"}
-        edges, values = _edges(quantity), quantity.values[quantity.usable]
+        edges, values = _edges(lot, quantity), quantity.values[quantity.usable]
+        ends = np.concatenate([[values.min()], edges[1:-1], [values.max()]])  # the outer bars have what is beyond, too
         inside = np.clip(np.searchsorted(edges, values, "right") - 1, 0, edges.size - 2)
         for bar in np.unique(inside).tolist():
-            low, high, devices = edges[bar], edges[bar + 1], names[quantity.usable][inside == bar].tolist()
+            low, high, devices = ends[bar], ends[bar + 1], names[quantity.usable][inside == bar].tolist()
             last = bar == edges.size - 2
             parts[f"bar-{place}-{bar}"] = {
                 "role": "button",
@@ -111,9 +122,9 @@ def _is_wide(quantity: Quantity) -> bool:
     return quantity.one_sided and bool(values.min() > 0 and values.max() > 5 * quantity.median)
 
 
-def _edges(quantity: Quantity) -> np.ndarray:
+def _edges(lot: Lot, quantity: Quantity) -> np.ndarray:
     """Of the bars of a quantity."""
-    values = quantity.values[quantity.usable]
+    values = np.clip(quantity.values[quantity.usable], *_window(lot, quantity))
     count = min(40, max(8, round(2 * math.sqrt(values.size))))
     if _is_wide(quantity):
         return np.geomspace(values.min(), values.max(), count)
@@ -131,15 +142,17 @@ def _ticks(values: np.ndarray) -> int:
 def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
     parts = bars(lot, shown)
     for place, (axes, quantity) in enumerate(zip(_grid(figure, len(shown)), shown, strict=True)):
-        values, far = quantity.values[quantity.usable], _far(lot, quantity)[quantity.usable]
+        (low, high), far = _window(lot, quantity), _far(lot, quantity)[quantity.usable]
         middle, half = quantity.median, lot.reach(quantity) * quantity.spread
-        low, high, edges = np.min(values), np.max(values), _edges(quantity)
+        given, edges = quantity.values[quantity.usable], _edges(lot, quantity)
+        values, beyond = np.clip(given, low, high), (given < low) | (given > high)
         below = max(middle - half, low) if quantity.one_sided else middle - half
         axes.set_gid(f"panel-{place}")
         axes.axvspan(max(below, edges[0]), min(middle + half, edges[-1]), color=SHADE, lw=0)
         axes.axvline(middle, color=QUIET, linewidth=0.6)
         axes.hist([values[far], values[~far]], bins=edges.tolist(), color=[FAR_OFF, USUAL], stacked=True)
-        axes.plot(values[far], np.zeros(far.sum()), "^", color=FAR_OFF, markersize=3, clip_on=False)
+        for mark, marked in (("^", far & ~beyond), ("<", given < low), (">", given > high)):
+            axes.plot(values[marked], np.zeros(marked.sum()), mark, color=FAR_OFF, markersize=3, clip_on=False)
         for bar, (left, right) in enumerate(pairwise(edges)):
             if (name := f"bar-{place}-{bar}") in parts:
                 axes.axvspan(left, right, facecolor="none", edgecolor="none", zorder=5).set_gid(name)
@@ -170,17 +183,26 @@ def _draw_columns(figure: Figure, lot: Lot, pairs: Sequence[tuple[str, str, Tren
             _draw_trend(axes, lot, quantity, trend)
         else:
             _draw_groups(axes, lot, quantity, groups(lot.columns, len(lot.done))[column])
-        label(axes.yaxis, "", quantity.unit, quantity.values[quantity.usable])
+        label(axes.yaxis, "", quantity.unit, np.clip(quantity.values[quantity.usable], *_window(lot, quantity)))
         axes.set_xlabel(column)
         axes.locator_params(axis="y", nbins=5)
         name_panel(axes, name)
 
 
+def _draw_devices(axes: Axes, x: np.ndarray, lot: Lot, quantity: Quantity, known: np.ndarray) -> None:
+    """A point for each device, and an arrow at a rim for each beyond it."""
+    (low, high), far, values = _window(lot, quantity), _far(lot, quantity), quantity.values
+    axes.plot(x[known & ~far], np.clip(values, low, high)[known & ~far], ".", color=USUAL, markersize=2.5)
+    inside = (values >= low) & (values <= high)
+    for mark, marked in (("^", far & (values > high)), ("v", far & (values < low)), ("D", far & inside)):
+        size = 2 if mark == "D" else 3
+        axes.plot(x[known & marked], np.clip(values, low, high)[known & marked], mark, color=FAR_OFF, markersize=size)
+
+
 def _draw_trend(axes: Axes, lot: Lot, quantity: Quantity, trend: Trend) -> None:
-    x, far = numeric(lot.columns)[trend.column], _far(lot, quantity)
+    x = numeric(lot.columns)[trend.column]
     known = quantity.usable & np.isfinite(x)
-    axes.plot(x[known & ~far], quantity.values[known & ~far], ".", color=USUAL, markersize=2.5)
-    axes.plot(x[known & far], quantity.values[known & far], "^", color=FAR_OFF, markersize=3)
+    _draw_devices(axes, x, lot, quantity, known)
     ends = np.array([x[known].min(), x[known].max()])
     axes.plot(ends, trend.at(ends), color=QUIET, linewidth=0.8)
     axes.margins(x=0.05)
@@ -188,11 +210,10 @@ def _draw_trend(axes: Axes, lot: Lot, quantity: Quantity, trend: Trend) -> None:
 
 
 def _draw_groups(axes: Axes, lot: Lot, quantity: Quantity, members: Mapping[str, Any]) -> None:
-    far, shift = _far(lot, quantity), np.random.default_rng(0).uniform(-0.2, 0.2, quantity.values.size)
+    shift = np.random.default_rng(0).uniform(-0.2, 0.2, quantity.values.size)
     for place, inside in enumerate(members.values()):
         known = quantity.usable & inside
-        axes.plot(place + shift[known & ~far], quantity.values[known & ~far], ".", color=USUAL, markersize=2.5)
-        axes.plot(place + shift[known & far], quantity.values[known & far], "^", color=FAR_OFF, markersize=3)
+        _draw_devices(axes, place + shift, lot, quantity, known)
         axes.plot(
             [place - 0.3, place + 0.3],
             [np.median(quantity.values[known])] * 2 if known.any() else [np.nan] * 2,
