@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.faults import fault_phrases
 from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.criteria import CLEAR, VALIDATION_FACTOR
@@ -79,9 +80,15 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
         records, folder = read(job, orders, given, Path(scratch)), Path(scratch) / "device"
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
-        row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - start}
+        row = row_of(given, result, improvement) | {"readings": wrong_readings(records)}
+        row |= {"cpu_seconds": time.process_time() - start}
         write_sealed(folder / "device.json", row | {"written": written(folder)})
         return read_files(folder)
+
+
+def wrong_readings(records: list[Record]) -> list[str]:
+    """What looks wrong with the readings of a device, by its record."""
+    return [f"{record.name}: {phrase}" for record in records for phrase in fault_phrases(record)]
 
 
 def written(folder: Path) -> dict[str, str]:

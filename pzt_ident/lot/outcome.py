@@ -25,9 +25,10 @@ from pzt_ident.lot.statistics import (
     out_of_line,
     trends,
 )
-from pzt_ident.lot.table import Row, faults_in, in_unit, missing_in, read_devices, rows_of, some
+from pzt_ident.lot.table import Row, faults_in, in_unit, missing_in, read_devices, readings_in, rows_of, some
 
 DETERMINED = "determined"
+MOST_TOLD = 5  # devices whose readings look wrong
 
 
 @dataclass(frozen=True)
@@ -144,6 +145,17 @@ class Lot:
         return dict(Counter(row["verdict"] for row in self.done).most_common())
 
     @property
+    def misread(self) -> dict[str, list[str]]:
+        """What looks wrong with the readings of each device of which anything does."""
+        return {row["device"]: told for row in self.done if (told := readings_in(row))}
+
+    def of_readings(self) -> list[str]:
+        """A sentence on each of the first devices whose readings look wrong, and one on how many more there are."""
+        lines = [f"The readings of {device} look wrong: {'; '.join(told)}." for device, told in self.misread.items()]
+        more = len(lines) - MOST_TOLD
+        return [*lines[:MOST_TOLD], *[f"So do those of {more} more: see `readings` in the table."] * (more > 0)]
+
+    @property
     def same_data(self) -> list[list[str]]:
         """Devices whose files are the same to the last byte."""
         by_hash: dict[str, list[str]] = {}
@@ -165,6 +177,7 @@ class Lot:
                 for row in self.done
                 for word, remedy in faults_in(row).items()
             ],
+            "readings": self.misread,
             "same_data": self.same_data,
             "out_of_line": [{"device": finding.device, "reason": finding.sentence} for finding in self.findings],
         }
@@ -183,6 +196,7 @@ class Lot:
             lines.append(f"Missing in {len(names)}: {effect} ({some(names)}).")
         for fault, names in self.faults.items():
             lines.append(f"Fault of the set-up in {len(names)} ({some(names)}): {fault}")
+        lines += self.of_readings()
         for reason, names in (
             ("The model fits worse than usual", self.ill_fitted),
             ("Parameters out of line", self.odd),

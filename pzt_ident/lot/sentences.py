@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pzt_ident.data.notation import alike, counted, listed, number, percent, spelled, unit
 from pzt_ident.lot.outcome import Lot
 from pzt_ident.lot.statistics import Difference, Quantity, Trend
-from pzt_ident.lot.table import Row, faults_in, missing_in, some
+from pzt_ident.lot.table import Row, faults_in, missing_in, readings_in, some
 from pzt_ident.run.collect import MOST_OF_THE_NOISE
 
 MOST_GROUPS = 4  # of which a sentence names each median
@@ -71,6 +71,7 @@ def findings(lot: Lot) -> Iterator[str]:
         if difference.clear:
             quantity = next(quantity for quantity in lot.quantities if quantity.name == difference.quantity)
             yield f"{quantity.name} differs by {difference.column}: {groups_of(difference, unit(quantity.unit))}."
+    yield from map(spelled, lot.of_readings())
     for names in lot.same_data:
         yield f"{listed(names)} have the same data: is one of them a copy?"
     undetermined = [
@@ -139,4 +140,4 @@ def in_setup(row: Row) -> list[str]:
 def _cause(row: Row) -> list[str]:
     """What the diagnosis of a device names."""
     missing = [f"misses {listed(missing_in(row))}"] if missing_in(row) else []
-    return [*missing, *in_setup(row)]
+    return [*["readings look wrong"] * bool(readings_in(row)), *missing, *in_setup(row)]

@@ -174,7 +174,7 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
     line |= {"verdict": row["verdict"], "effects": ", ".join(row["effects"]), "suspects": ", ".join(row["suspects"])}
     faults = faults_in(row)
     line |= {"missing": ", ".join(missing_in(row)), "faults of the set-up": ", ".join(faults)}
-    line |= {"remedy of the set-up": " ".join(faults.values())}
+    line |= {"remedy of the set-up": " ".join(faults.values()), "readings": "; ".join(readings_in(row))}
     for key, heading in RMSE.items():
         for use, value in (row[key] or {}).items():
             line |= _cell(heading.format(use), "", value, row["unit"], units)
@@ -190,6 +190,11 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
 def missing_in(row: Row) -> list[str]:
     """What a device misses, or `A or B` where its data cannot tell them apart."""
     return row.get("missing") or row["effects"]
+
+
+def readings_in(row: Row) -> list[str]:
+    """What looks wrong with a device's readings."""
+    return row.get("readings") or []
 
 
 def faults_in(row: Row) -> dict[str, str]:

@@ -1,13 +1,16 @@
 """What the diagnoses of single devices say is said of the lot, wherever it is told."""
 
+import numpy as np
 import pytest
 
 from lot.test_table import row_of
-from pzt_ident.lot.device import missing_of
+from pzt_ident.data.faults import fault_phrases
+from pzt_ident.lot.device import missing_of, wrong_readings
 from pzt_ident.lot.outcome import Lot
 from pzt_ident.lot.report import device_lines, header
 from pzt_ident.lot.sentences import far, findings
 from pzt_ident.lot.table import frame_of
+from rig import path, record
 
 EITHER, MEND = "slew_limit or amplifier_lag", "Tighten the linkage."
 
@@ -59,6 +62,30 @@ def test_what_a_device_misses_and_what_is_wrong_with_its_set_up_is_told_everywhe
     summary = lot.summary()
     assert summary["missing"] == {EITHER: ["d3"]}
     assert summary["faults"] == [{"device": "d5", "fault": "backlash", "remedy": MEND}]
+
+
+def test_readings_that_look_wrong_are_told_everywhere(lot):
+    lot.rows[5] |= {"readings": ["loops: 3 readings of x are exactly 6 um"]}
+    said = "\n".join([*lot.sentences(), *findings(lot)])
+    assert said.count("The readings of d5 look wrong: loops: 3 readings of x are exactly 6 ") == 2
+    assert {device: kind for device, kind, _ in far(lot)}["d5"] == "readings look wrong, backlash in the set-up"
+    frame = frame_of(iter(lot.rows)).set_index("device")
+    assert (frame.loc["d5", "readings"], frame.loc["d4", "readings"]) == (lot.rows[5]["readings"][0], "")
+    assert lot.summary()["readings"] == {"d5": lot.rows[5]["readings"]}
+    for row in lot.rows:
+        row |= {"readings": ["loops: odd"]}
+    assert len(lot.of_readings()) == 6
+    assert lot.of_readings()[-1] == "So do those of 15 more: see `readings` in the table."
+
+
+def test_a_device_is_told_what_check_tells_of_its_readings():
+    """The end of a sensor's range."""
+    drive = np.tile(path(0, 100, 0, points=200), 3)
+    clipped = record(
+        drive, response=[np.minimum(0.1 * drive + 1e-3 * np.random.default_rng(1).normal(size=drive.size), 8)]
+    )
+    assert wrong_readings([clipped]) == [f"{clipped.name}: {phrase}" for phrase in fault_phrases(clipped)]
+    assert "the end of the range of a sensor" in wrong_readings([clipped])[0]
 
 
 def test_parameters_of_the_model_come_first_then_those_of_effects_by_how_many_have_them(lot):
