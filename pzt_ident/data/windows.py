@@ -22,7 +22,7 @@ ROUGHER = 2.0  # times its signals a remainder may be, since not all noise has a
 LEAST = 8  # quiet stretches or windows: fewer are chance
 DEPENDENT = 1e-6  # of the largest singular value: columns of less are one
 TYPICAL = 8  # windows whose bases stand for all
-MOST_LINES, NEAR, OWN = 3, 25, 3  # lines over time, the frequencies that stand around each, and those that are its own
+MOST_LINES, NEAR, OWN = 8, 25, 3  # lines over time, the frequencies that stand around each, and those that are its own
 LONGEST = 2**17  # samples of a record in which lines are looked for
 
 
@@ -70,14 +70,18 @@ def window_noise(signals: list[Signal], least: float) -> float:
     drives = [courses_of(signal.drives) for signal in signals]
     remainders += [remainder(signals, length, drives) for length in LENGTHS if length <= WITH_DRIVES]
     lines = lines_of(signals)
-    period = 1 / (min(lines) * min(signal.dt for signal in signals)) if lines else np.inf
-    waves = waves_of(signals, lines) if lines else []
-    remainders += [remainder(signals, length, waves) for length in LENGTHS if length > period]
+    remainders += [with_lines(signals, length, lines) for length in LENGTHS if lines]
     noise = [part for part in remainders if part and part.memory < MOST_MEMORY and part.roughness <= ROUGHER * white]
     if not noise:
         return white
     chosen = min(noise, key=lambda part: max(part.deviation, least) / part.share**1.5)
     return max(chosen.deviation, least)
+
+
+def with_lines(signals: list[Signal], length: int, lines: list[float]) -> Remainder | None:
+    """What polynomials and lines leave in the windows of those signals of which they hold a period of each line."""
+    held = [signal for signal in signals if length * signal.dt * min(lines) > 1]
+    return remainder(held, length, waves_of(held, lines)) if held else None
 
 
 def remainder(signals: list[Signal], length: int, courses: Sequence[Array] = ()) -> Remainder | None:

@@ -276,6 +276,19 @@ def test_a_hum_that_short_rests_do_not_tell_from_noise_is_told_in_windows():
     assert noise_floor(beginning_at_rest(60, hum=30.0, behind=3.0), 0).source != "rest segments"
 
 
+@pytest.mark.parametrize(("first", "orders"), [(72.02, (1,)), (50.01, (1, 3, 5, 7))])
+def test_a_hum_is_told_from_noise_in_the_records_that_hold_its_periods(first, orders):
+    """Of several rates, without a rest: windows of the fast ones are shorter than a period, and the floor was 44 times
+    the noise."""
+    made = []
+    for seed, (rate, samples) in enumerate([(400, 3700), (1000, 2300), (10000, 3100), (100, 3200), (10000, 4700)]):
+        t = np.arange(samples) / rate
+        drive = 100 * np.sin(2 * np.pi * rate / 900 * t) + 40 * np.sin(2 * np.pi * rate / 333 * t + seed)
+        hum = sum(40 / order * np.sin(2 * np.pi * first * order * t + seed) for order in orders)
+        made.append(dataclasses.replace(record(drive, drive + hum + white(samples, seed=seed)), dt=1 / rate))
+    assert noise_floor(made, 0).value == pytest.approx(1, rel=0.3)
+
+
 @pytest.mark.parametrize("value", [0.0, 1.23e3])
 def test_a_short_rest_in_which_the_reading_hangs_is_no_evidence(value):
     made = beginning_at_rest(40)
