@@ -203,10 +203,13 @@ def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> Non
 
 
 def clearly_best(case: Case, refits: Mapping[str, Fit], usual: str) -> str:
-    """The item that fits best, or of those that are hardly worse the usual one, else that of fewest parameters."""
+    """The item that fits best, or of those that are hardly worse the usual one, else that of fewest parameters. The
+    usual one where none can be simulated."""
     least = min(fit.total for fit in refits.values())
     close = {item: fit for item, fit in refits.items() if removed_rms(fit.total, least) <= TIE * case.floor}
-    return usual if usual in close else min(close, key=lambda item: (close[item].freedom, close[item].total))
+    if usual in close or not close:
+        return usual
+    return min(close, key=lambda item: (close[item].freedom, close[item].total))
 
 
 def refit_other_forms(

@@ -1,6 +1,6 @@
 """A gain that changes with the voltage."""
 
-from pzt_ident.model.block import Block, Place, expm1
+from pzt_ident.model.block import Block, Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -13,7 +13,7 @@ class QuadraticGain(Block):
     """
 
     place = Place.READOUT
-    form = Form("voltage", ("voltage", "displacement", "saturating"), "What the gain grows with.")
+    form = Form("voltage", ("voltage", "displacement"), "What the gain grows with.")
     curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per drive, over twice the gain.", null=0)
     look_alikes = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
     separate_by = (
@@ -43,26 +43,4 @@ class OfDisplacement(QuadraticGain):
     curvature = Parameter("1/response", (-0.5, 0.5), "Growth of the gain by displacement, over twice it.", null=0)
 
 
-class Saturating(QuadraticGain):
-    """Electrostriction levels off: y = d (u + curvature (tanh(knee u) / knee)^2) - h.
-
-    Hom & Shankar (1994), J. Intell. Mater. Syst. Struct. 5, 795: strain by the square of a polarization that saturates.
-    """
-
-    trials = {"knee": 8}
-    curvature = Parameter("1/drive", (-2, 2), "Growth of the gain per drive, over twice the gain, at rest.", null=0)
-    knee = Parameter("1/drive", (0.3, 30), "One over the voltage at which the polarization levels off.", scale="log")
-
-    def prepare(curvature, knee):
-        return curvature / knee**2, knee
-
-    def start(u, most, knee):
-        return ()
-
-    def step(u, most, knee):
-        grown = expm1(2 * min(knee * abs(u), 20.0))
-        polarized = grown / (grown + 2)
-        return u + most * polarized * polarized
-
-
-QuadraticGain.forms = {"displacement": OfDisplacement, "saturating": Saturating}
+QuadraticGain.forms = {"displacement": OfDisplacement}

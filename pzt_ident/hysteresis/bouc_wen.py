@@ -41,7 +41,7 @@ class BoucWen(Operator):
     )
     exponent = Parameter("1", (-0.5, 0.5), "Power of the drive rate.", 0, effect="rate_dependence.power")
     level = Parameter(
-        "V/s", (SLOW, FASTEST), "Drive rate at half of the growth.", FASTEST, "log", effect="rate_dependence.level"
+        "V/s", (1.0, FASTEST), "Drive rate at half of the growth.", FASTEST, "log", effect="rate_dependence.level"
     )
     skew = Parameter("1/drive", (-2, 2), "Part that grows with the voltage.", 0, effect="asymmetry.polynomial")
     skew_2 = Parameter("1/drive^2", (-4, 4), "Part that grows with its square.", 0, effect="asymmetry.polynomial")

@@ -34,7 +34,7 @@ class PrandtlIshlinskii(Bank):
     )
     exponent = Parameter("1", (0, 1), "Power of the drive rate.", 0, effect="rate_dependence.power")
     level = Parameter(
-        "V/s", (SLOW, FASTEST), "Drive rate at half of the growth.", FASTEST, "log", effect="rate_dependence.level"
+        "V/s", (1.0, FASTEST), "Drive rate at half of the growth.", FASTEST, "log", effect="rate_dependence.level"
     )
     order = Parameter("1", (0.2, 2), "Power of the drive rate.", 1, effect="rate_dependence.alike")
 

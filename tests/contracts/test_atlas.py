@@ -18,7 +18,7 @@ from pzt_ident.model.registry import blocks, optimizers, word_of
 
 WORDS = [*blocks.words(), *optimizers.words()]
 EFFECTS = blocks.effects()
-LARGEST_FILE, LARGEST_WORD = 1.6e6, 1.6e5
+LARGEST_FILE, LARGEST_WORD = 1.7e6, 1.6e5
 
 
 class Page(HTMLParser):

@@ -7,7 +7,7 @@ import pytest
 
 from made_fits import CASE, fit
 from pzt_ident.diagnosis import forms
-from pzt_ident.diagnosis.forms import Candidate, choose_forms
+from pzt_ident.diagnosis.forms import Candidate, choose_forms, clearly_best
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.model.registry import blocks
 
@@ -151,6 +151,12 @@ def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypat
     monkeypatch.setattr(forms, "with_modes_exchanged", lambda fit: [])
     for rival, tried in ((1.0, False), (1.5, True), (np.inf, True)):
         assert (forms.from_each_other(CASE, refits, rival) != refits) == tried
+
+
+def test_of_forms_that_cannot_be_simulated_the_usual_one_is_taken():
+    """Their fits failed all: there is none that is hardly worse than the best."""
+    refits = {item: fit(np.inf, np.inf, [item]) for item in ("creep", "creep.voltage")}
+    assert clearly_best(CASE, refits, "creep") == "creep"
 
 
 @pytest.mark.parametrize(("apart", "taken"), [(0.19, "cross_coupling.voltage"), (0.21, "cross_coupling.displacement")])

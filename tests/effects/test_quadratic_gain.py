@@ -18,13 +18,6 @@ def test_alone_it_is_a_parabola():
     np.testing.assert_allclose(found, DRIVE + 2e-3 * DRIVE**2, rtol=1e-15)
 
 
-@pytest.mark.parametrize("knee", [1e-4, 0.02, 0.5])
-def test_electrostriction_saturates(knee):
-    known = {"quadratic_gain.curvature": 2e-3, "quadratic_gain.knee": knee}
-    found = response(["quadratic_gain.saturating"], known, DRIVE)
-    np.testing.assert_allclose(found, DRIVE + 2e-3 * (np.tanh(knee * DRIVE) / knee) ** 2, rtol=1e-12)
-
-
 @pytest.mark.parametrize("operator", OPERATORS)
 def test_both_branches_bend_the_same_way(operator):
     known = OPERATORS[operator]
