@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from typing import NamedTuple
 
 from pzt_ident.data.faults import fault_phrases
 from pzt_ident.data.noise import noise_floor
@@ -31,18 +32,37 @@ def caveats(case: Case, fit: Fit, said: str = "") -> str:
     return "".join(sentence for sentence in sentences if sentence not in said)
 
 
-def addition_sentences(fit: Fit) -> str:
-    """A sentence about each effect that adds to the response in amounts of each record: the most it adds to one."""
+class Amount(NamedTuple):
+    """The most that an effect with amounts of each record adds to an axis in one: root mean square, in a unit."""
+
+    effect: str
+    axis: str
+    record: str
+    rms: float
+    unit: str
+
+
+def amounts(fit: Fit) -> list[Amount]:
+    """That of each effect that adds to the response in amounts of each record, on each measured axis."""
     problem, model = fit.problem, fit.problem.model
     theta = problem.parameters(fit.point)
     added = {simulator.record.name: simulator.added(theta) for simulator in problem.every_simulator}
-    text = ""
+    found = []
     for effect, (i, axis) in product(next(iter(added.values())), enumerate(model.measured)):
         record = max(added, key=lambda name: added[name][effect][i])
-        rms, unit = added[record][effect][i], str(problem.records[0].response_units[axis])
-        of_axis = f" of {model.axes[axis]}" if len(model.measured) > 1 else ""
-        text += f" The {effect}{of_axis} is largest in record {record}: {rms / factor(unit):.2g} {unit} rms."
-    return text
+        unit = str(problem.records[0].response_units[axis])
+        found.append(Amount(effect, model.axes[axis], record, float(added[record][effect][i]) / factor(unit), unit))
+    return found
+
+
+def addition_sentences(fit: Fit) -> str:
+    """A sentence about each of these."""
+    several = len(fit.problem.model.measured) > 1
+    return "".join(
+        f" The {item.effect}{f' of {item.axis}' * several} is largest in record {item.record}: {item.rms:.2g}"
+        f" {item.unit} rms."
+        for item in amounts(fit)
+    )
 
 
 def measured_only_sentence(case: Case, fit: Fit) -> str:

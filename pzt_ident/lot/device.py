@@ -198,6 +198,7 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
             for name, parameter in best["parameters"].items()
         },
         "improved": {name: interval(parameter) for name, parameter in last["parameters"].items() if improvement},
+        "amounts": last.get("amounts", []),
         "files": {file: str(path) for file, path in given.files.items()},
         "sha256": given.sha256,
     }

@@ -183,6 +183,8 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
         line |= _interval(name, parameter, units) | {f"{name} verdict": parameter["verdict"]}
     for name, parameter in row.get("improved", {}).items():
         line |= _interval(f"improved {name}", parameter, units)
+    for amount in row.get("amounts") or []:
+        line |= _cell(f"improved {amount['axis']} {amount['effect']} rms", "", amount["rms"], amount["unit"], units)
     folder = folder_of(Path(), row["device"]).as_posix()
     return line | {"cpu [s]": row["cpu_seconds"], "sha256": row["sha256"], "folder": folder, "reason": row["reason"]}
 

@@ -14,7 +14,7 @@ from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.bounds import bounds_that_changed, narrow_bounds_sentence
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
+from pzt_ident.diagnosis.caveats import amounts, broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
@@ -127,6 +127,7 @@ def stair(case: Case, step: stairs.Step, budget: Budget | None = None) -> dict[s
         "explained": step.explained,
         "expected": step.expected,
         "parameters": parameters_of(step.fit, budget),
+        "amounts": [amount._asdict() for amount in amounts(step.fit)],
         "model": list(map(word_of, case.words_of(step.fit))),
         "bounds": bounds_that_changed(case, step.fit),
         "effects": list(step.fit.effects),

@@ -7,8 +7,10 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.bounds import Widened
-from pzt_ident.diagnosis.caveats import caveats, start_step_sentence
+from pzt_ident.diagnosis.caveats import addition_sentences, amounts, caveats, start_step_sentence
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.starts import first_fit
 
 
 def fit_of(case):
@@ -47,6 +49,28 @@ def test_what_the_job_or_the_model_says_is_not_asked_for():
     assert start_step_sentence(known, fit_of(known)) == ""
     moving = case.with_words(("history", *case.words))
     assert start_step_sentence(moving, fit_of(moving)) == ""
+
+
+def test_the_most_that_an_effect_adds_to_a_record_is_told_with_the_record():
+    """A hum of 40 nm, of 56 nm in the last record."""
+    case = stage.case()
+    waves = [np.sin(2 * np.pi * 7.3 * record.time) for record in case.records]
+    sizes = [1.0] * (len(waves) - 1) + [1.4]
+    made = [
+        replace(record, response=record.response + 40e-9 * np.sqrt(2) * size * wave)
+        for record, size, wave in zip(case.records, sizes, waves, strict=True)
+    ]
+    hummed = case.with_records(made)
+    fit = refit(hummed, first_fit(hummed, 0), ("periodic_disturbance",), {"periodic_disturbance.frequency": 7.3})
+    (amount,) = amounts(fit)
+    assert (amount.effect, amount.axis, amount.record, amount.unit) == (
+        "periodic_disturbance",
+        "x",
+        made[-1].name,
+        "um",
+    )
+    assert amount.rms == pytest.approx(0.056, rel=0.05)
+    assert f"largest in record {made[-1].name}: 0.056 um rms" in addition_sentences(fit)
 
 
 def test_what_was_said_is_not_said_again():

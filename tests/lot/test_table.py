@@ -5,6 +5,7 @@ from io import BytesIO
 from pathlib import Path
 
 import pandas as pd
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -42,6 +43,18 @@ def row_of(device, state="done", columns=None):
     gain = {"value": 0.1, "low": 0.0, "high": 0.2, "unit": "um/V", "verdict": "determined"}
     found |= {"rmse": {"identify": 0.1}, "rmse_improved": None, "noise_floor": 0.01, "parameters": {"gain": gain}}
     return row | found if state == "done" else row
+
+
+def test_what_an_effect_adds_to_a_record_is_a_column():
+    """In the unit of the first device that has it."""
+    drift = {"effect": "drift", "axis": "x", "record": "loops", "rms": 0.3, "unit": "um"}
+    rows = [
+        row_of("a"),
+        row_of("b") | {"amounts": [drift]},
+        row_of("c") | {"amounts": [drift | {"rms": 500, "unit": "nm"}]},
+    ]
+    column = frame_of(iter(rows))["improved x drift rms [um]"]
+    assert column.isna().tolist() == [True, False, False] and column.tolist()[1:] == [0.3, pytest.approx(0.5)]
 
 
 OWN = list(frame_of(iter([row_of("a")])).columns)
