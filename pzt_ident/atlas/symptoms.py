@@ -89,6 +89,15 @@ def amplitude(traces: Traced) -> float:
     return float(min(1.0, abs(small - large) * SPAN / (8 * traces.largest * STROKE)))
 
 
+def later(traces: Traced) -> float:
+    """How much of what is left on equal periods goes with the drive in the first of them otherwise than in the last."""
+    u, left = drives()["tone"].u, traces.left["tone"]
+    third = u.size // 3
+    first, last = (np.polyfit(u[part], left[part], 1)[0] for part in (slice(third), slice(-third, None)))
+    moved = abs(first - last) / 2 * np.std(u)
+    return float(min(1.0, moved / (np.std(left) or 1))) * _present(traces, "tone")
+
+
 RIPPLES, BINS = 8, 100  # changes of sign over the range, and bins of it
 
 SYMPTOMS = (
@@ -99,6 +108,7 @@ SYMPTOMS = (
     Symptom("The residual is one bent curve over the drive, the same on both branches.", bends),
     Symptom("The residual is a ripple along the displacement, the same on both branches.", ripples),
     Symptom("The gain differs between small loops and large ones.", amplitude),
+    Symptom("The gain differs between the first of equal loops and the last.", later),
     Symptom("Slow loops fit, but a small multisine does not: lag, phase or resonance.", high),
     Symptom("The spectrum has a line that is no harmonic of the drive.", line),
     Symptom("The stage moves with the drive of another axis.", other_axis),

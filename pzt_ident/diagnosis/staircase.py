@@ -51,12 +51,12 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
 def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase:
     """The same, with drives as they are unless the model with the best effect says otherwise."""
     good = adequate(case, first, first)
-    if mended := None if good else fault_instead(case, first):
+    wide = not good and needs_wider_bounds(case, first)
+    if mended := None if good or wide else fault_instead(case, first):
         for step in mended.steps:
             on_step(step)
         return mended
     case.budget.begin_path()
-    wide = not good and needs_wider_bounds(case, first)
     behind = None if good or wide or not has_smooth(case) else smooth_behind(case, first, likeliest(case, first))
     diagnosis = None if good or wide or behind else diagnose(case, first)
     if diagnosis and diagnosis.best:
