@@ -83,28 +83,31 @@ def _as_long(row: Sequence[str], header: Sequence[str]) -> list[str]:
 
 
 def listed_devices(path: Path, job: Job) -> list[Device]:
-    """A device a row; one whose row names no file is a device with a fault. Raises InputError where the list cannot be
-    read, lists no device, or leaves open what a column is."""
+    """A device a row: its folder or file, or, where that cell is empty, a column for each file of the job. One whose
+    row names no file is a device with a fault. Raises InputError where the list cannot be read, lists no device, or
+    leaves open what a column is."""
     try:
         listing = read_listing(path, path.read_bytes())
     except OSError as error:
         raise InputError(error.strerror or "cannot be read", where=str(path)) from None
     _check(listing)
     named, at = listing.places(NAMES)[:1], listing.places(PLACES)
-    by_file = {"": at[0]} if at else _file_columns(listing.header, job)
-    used = {*named, *by_file.values()}
+    by_place = {"": at[0]} if at else {}
+    by_file = _file_columns(listing.header, job)
+    used = {*named, *by_place.values(), *by_file.values()}
     known = _known(listing, [place for place in range(len(listing.header)) if place not in used])
+    ways = [by_place if by_place and (row[at[0]].strip() or not by_file) else by_file for _, row in listing.rows]
     files = [
-        {file: path.parent / row[place].strip() for file, place in by_file.items() if row[place].strip()}
-        for _, row in listing.rows
+        {file: path.parent / row[place].strip() for file, place in way.items() if row[place].strip()}
+        for way, (_, row) in zip(ways, listing.rows, strict=True)
     ]
     own = iter(names_of([next(iter(places.values())) for places in files if places]))
     devices = []
-    for (line, row), places, columns in zip(listing.rows, files, known, strict=True):
+    for (line, row), way, places, columns in zip(listing.rows, ways, files, known, strict=True):
         name = next(own) if places else f"line {line}"
         name = next((row[place].strip() for place in named if row[place].strip()), name)
         device = _device(name, places, path.parent, job)
-        fault, where = _fault(row, len(listing.header), len(places) == len(by_file)), f"{path}:{line}"
+        fault, where = _fault(row, len(listing.header), len(places) == len(way)), f"{path}:{line}"
         devices.append(
             replace(device, columns=columns, where=where, fault=f"{where}: {fault}" if fault else device.fault)
         )

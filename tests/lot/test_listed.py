@@ -91,6 +91,16 @@ def test_a_bad_row_is_the_fault_of_its_devices_alone(here, row, said):
     assert len({device.name for device in bad}) == len(bad)
 
 
+def test_devices_may_be_folders_in_some_rows_and_files_in_others(here):
+    touch(here / "d1" / "loops.csv", here / "d1" / "slow.csv", here / "a.csv", here / "b.csv")
+    (here / "lot.csv").write_text("device,folder,loops,slow\nd1,d1,,\nd2,,a.csv,b.csv\nd3,,a.csv,\n")
+    first, second, third = devices_of(["lot.csv"], job(TWO, here))
+    assert [*map(str, first.files.values())] == ["d1/loops.csv", "d1/slow.csv"] and not first.columns
+    assert [*map(str, second.files.values())] == ["a.csv", "b.csv"] and not second.columns
+    assert not first.fault and not second.fault
+    assert third.fault == "lot.csv:4: names no file: fill the cell, or leave the row out"
+
+
 def test_the_same_row_again_is_the_same_device(here):
     touch(here / "lot/a/loops.csv", here / "lot/b/loops.csv")
     (here / "lot.csv").write_text("device,folder,batch\na,lot/a,A\na,lot/a,A\n")
