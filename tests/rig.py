@@ -37,8 +37,8 @@ def model(*chain, axes=None, measured=None):
     """A model of blocks or their words, these as small as is worth a test; two axes where a block couples them, and the
     mechanics that it asks."""
     chain = [small(block_of(item)) if isinstance(item, str) else item for item in chain]
-    asking = [block for block in chain if issubclass(block, Coupling) and block.of_mechanics]
-    chain += [blocks["lumped"] for block in asking[:1] if block.mechanics_in(chain) is None]
+    if any(issubclass(block, Coupling) and block.lacks_mechanics(chain) for block in chain):
+        chain.append(blocks["lumped"])
     axes = axes or (2 if any(issubclass(block, Coupling | Modes) for block in chain) else 1)
     return Chain(chain, AXES[:axes], range(axes) if measured is None else measured)
 

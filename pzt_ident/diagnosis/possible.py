@@ -56,4 +56,4 @@ def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
         return False
     if not issubclass(form, Coupling):
         return True
-    return len(case.records[0].axes) > 1 and not (form.of_mechanics and form.mechanics_in(chain) is None)
+    return len(case.records[0].axes) > 1 and not form.lacks_mechanics(chain)

@@ -9,7 +9,7 @@ from pzt_ident.model.registry import blocks
 class Clipping(Block):
     """The amplifier's output stays within its supply: U_a = min(max(U, -1 / rail), 1 / rail).
 
-    Tao & Kokotovic (1996), Adaptive Control of Systems with Actuator and Sensor Nonlinearities, ch. 2. A fault of the
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. A fault of the
     set-up: a diagnosis tells it, and `improve` never adds it; a job may, as `effects: [clipping]`.
     """
 

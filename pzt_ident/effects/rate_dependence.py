@@ -50,9 +50,9 @@ class Level(RateDependence):
     """The growth levels off: alpha <- alpha (1 + rate 4 / log 10 (x / (1 + x) - x1 / (1 + x1))), x = |du/dt| / level,
     x1 that of 100 V/s; `rate` is the growth per decade at the level.
 
-    Relaxation of first order, whose loss is half developed at one rate: Ang, Khosla & Riviere (2007), IEEE/ASME Trans.
-    Mechatronics 12, 134, has its logarithm about that rate. Half-widths of plays are those at rest times 1 + rate 4 /
-    log 10 x / (1 + x).
+    A law of this package: about the level it grows as the logarithm of Ang, Khosla & Riviere (2007), IEEE/ASME Trans.
+    Mechatronics 12, 134, and it ends on either side. Half-widths of plays are those at rest times 1 + rate 4 / log 10
+    x / (1 + x).
     """
 
     trials = {"level": 6}

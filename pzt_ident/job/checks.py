@@ -218,7 +218,7 @@ def _effects(document: Document, items: tuple[str, ...], earlier: Earlier) -> No
             document.fault(loc, message, f"put one of these into `model`: {', '.join(owners)}{instead}")
         elif effect and "channels" in earlier and len(earlier["channels"].axes) < 2 and _is_kind(effect, "Coupling"):
             document.fault(loc, f"{word!r} needs a second axis", "give the other axis, at least its `drive`")
-        elif effect and _is_kind(effect, "Coupling") and effect.of_mechanics and effect.mechanics_in(hosts) is None:
+        elif effect and _is_kind(effect, "Coupling") and effect.lacks_mechanics(hosts):
             owners = [block.name for block in blocks if effect.mechanics_in([block])]
             document.fault(
                 loc, f"{items[i]!r} acts through the mechanics", f"put this into `model`: {', '.join(owners)}"

@@ -350,6 +350,11 @@ class Coupling(Block):
         return next((block for block in chain if wanted <= set(block.parameters())), None) if wanted else None
 
     @classmethod
+    def lacks_mechanics(cls, chain: Iterable[type[Block]]) -> bool:
+        """Whether a chain has no block for what this one asks of the mechanics."""
+        return bool(cls.of_mechanics) and cls.mechanics_in(chain) is None
+
+    @classmethod
     def asked_of_others(cls) -> set[str]:
         """The words that prepare may ask for beside the block's own."""
         return {*cls.of_mechanics, *(f"{OTHER}{word}" for word in (*cls.of_mechanics, *cls.parameters()))}

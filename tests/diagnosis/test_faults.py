@@ -82,6 +82,48 @@ def test_a_diagnosis_tells_it_too():
     assert not [item for item in found.candidates if item.decision == "missing"]
 
 
+SUPPLY, ZONE, GROWTH, WARM = 88.0, (42.0, 1.5), 0.03, 1.2  # V; V; 1; s
+
+
+def put_out(record, amplifier):
+    """What is missing where the amplifier puts out something else than it is told."""
+    known = {word: value for word, value in stage.STAGE.items() if "bouc" in word}
+    u = record.drive[0]
+    told, moved = (rig.response(["bouc_wen"], known, drive, dt=record.dt) for drive in (u, amplifier(u)))
+    return moved - told
+
+
+def dead(u):
+    centre, half = ZONE
+    return np.where(u > centre, np.maximum(u - half, centre), np.minimum(u + half, centre))
+
+
+def warming(record):
+    known = {word: value for word, value in stage.STAGE.items() if "bouc" in word}
+    x = rig.response(["bouc_wen"], known, record.drive[0], dt=record.dt)
+    return GROWTH * x * (1 - np.exp(-record.dt * np.arange(x.size) / WARM))
+
+
+FAULTY = {
+    "backlash": (in_gap, {"clearance": GAP * 1e6}),
+    "clipping": (lambda record: put_out(record, lambda u: np.minimum(u, SUPPLY)), {"rail": 1 / SUPPLY}),
+    "dead_zone": (lambda record: put_out(record, dead), {"centre": ZONE[0], "width": ZONE[1]}),
+    "gain_drift": (warming, {"growth": GROWTH}),
+}
+
+
+@pytest.mark.parametrize("word", blocks.faults())
+def test_every_fault_is_told_with_its_size_and_never_added(word):
+    """Each made by code of its own."""
+    missing, sizes = FAULTY[word]
+    case = stage.with_response(stage.case(), missing)
+    found = thinning.improve(case, lambda case: first_fit(case, 0))
+    assert (found.last.verdict, found.last.faults, found.end.effects) == ("unexplained", (word,), ())
+    (with_it,) = (step.fit for step in found.steps if step.added == word)
+    known = {name: with_it.values[f"{word}.{name}"] for name in sizes}
+    assert known == {name: pytest.approx(size, rel=0.1) for name, size in sizes.items()}
+
+
 def test_friction_that_gives_before_it_slides_is_no_backlash():
     case = stage.case(RUBBING, effects=())
     case.records = stage.records(RUBBING, effects=stage.EFFECTS | {"friction": {}})

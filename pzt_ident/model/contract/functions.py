@@ -83,8 +83,7 @@ def example(block: Any) -> Known:
     """An example value for each name that the functions of a block may ask for."""
     middle = {word: sum(item.bounds) / 2 for word, item in parameters(block).items()}
     solved, others = getattr(block, "solved", ()), block.asked_of_others() if kind_of(block) == "coupling" else ()
-    reverse = {f"other_{word}": value for word, value in middle.items()}
-    return EXAMPLE | block.numbers() | dict.fromkeys(solved, 0.5) | dict.fromkeys(others, 1.0) | reverse | middle
+    return EXAMPLE | block.numbers() | dict.fromkeys(solved, 0.5) | dict.fromkeys(others, 1.0) | middle
 
 
 def function_of(block: Any, word: str) -> FunctionType:
