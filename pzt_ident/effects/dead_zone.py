@@ -8,10 +8,11 @@ from pzt_ident.model.registry import blocks
 @blocks.register
 class DeadZone(Block):
     """The amplifier's output stays where it is while the command crosses a zone: U_a = U - min(max(U - centre, -width),
-    width), as where one transistor of an output stage takes over from the other.
+    width).
 
-    Tao & Kokotovic (1996), Adaptive Control of Systems with Actuator and Sensor Nonlinearities, ch. 2. A fault of the
-    set-up: a diagnosis tells it, and `improve` never adds it; a job may, as `effects: [dead_zone]`.
+    One transistor of an output stage takes over there from the other. Tao & Kokotovic (1996), Adaptive Control of
+    Systems with Actuator and Sensor Nonlinearities, ch. 2. A fault of the set-up: a diagnosis tells it, and `improve`
+    never adds it; a job may, as `effects: [dead_zone]`.
     """
 
     place = Place.SUPPLY
