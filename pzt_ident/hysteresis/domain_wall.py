@@ -10,6 +10,8 @@ from pzt_ident.model.registry import blocks
 ANHYSTERETIC = (1.0, 0.0, 0.0, 0.0)
 """Share, field, worth and shift of P_an / P_s = tanh((E + alpha P) / a), before any rescaling; see `anhysteretic`."""
 
+STEPS_TO_FIRST = 32  # of Runge and Kutta, from zero field to the first sample
+
 
 @blocks.register
 class DomainWall(Block):
@@ -57,7 +59,7 @@ class DomainWall(Block):
         return nan if runs_away else saturation, 1 / width, coupling, pinning / width, reversible
 
     def start(u, saturation, per_width, coupling, pinning, reversible):
-        return irreversible_step(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)[0], u
+        return virgin(u, per_width, coupling, pinning, reversible), u
 
     def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
         pin, _ = irreversible_step(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
@@ -77,7 +79,7 @@ class Biased(DomainWall):
     """
 
     def start(u, saturation, per_width, coupling, pinning, reversible):
-        pin, _ = irreversible_step(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        pin = virgin(u, per_width, coupling, pinning, reversible)
         an = anhysteretic(pin, u, ANHYSTERETIC, per_width, coupling, reversible)
         way = 1.0 if u > 0 else -1.0 if u < 0 else 0.0
         return pin, u, reversible * an + (1 - reversible) * pin, way, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
@@ -142,6 +144,14 @@ def biased_step(pin, before, p, way, side, end, p_end, curve, u, per_width, coup
     return (pin, u, reversible * an + (1 - reversible) * pin, now, side, end, p_end), curve, margin
 
 
+def virgin(u, per_width, coupling, pinning, reversible):
+    """P_irr / P_s at u, on the way there from an unpolarized state at zero field."""
+    pin, step = 0.0, u / STEPS_TO_FIRST
+    for i in range(STEPS_TO_FIRST):
+        pin, _ = irreversible_step(pin, i * step, (i + 1) * step, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+    return pin
+
+
 def irreversible_step(pin, before, u, curve, per_width, coupling, pinning, reversible):
     """P_irr / P_s at u by a Runge-Kutta step from `before`, and the least margin of eq. 9, 1 - alpha g / k, in it."""
     move = u - before
@@ -167,14 +177,16 @@ def slope(pin, u, move, curve, per_width, coupling, pinning, reversible):
 
 def anhysteretic(pin, u, curve, per_width, coupling, reversible):
     """P_an / P_s, the root p of p = share tanh((u + alpha P_s (c p + (1 - c) p_irr - worth)) / a - field) + shift, by
-    Newton's method; the right side is a contraction, so the root is unique."""
+    Halley's method; the right side is a contraction, so the root is unique."""
     share, field, worth, shift = curve
     at = u * per_width + coupling * ((1 - reversible) * pin - worth) - field
     inner = coupling * reversible
     p = share * tanh(at) + shift
-    for _ in range(6):
+    for _ in range(4):
         value = tanh(at + inner * p)
-        p = p - (p - share * value - shift) / (1 - inner * share * (1 - value * value))
+        rise = inner * share * (1 - value * value)
+        beyond, slope, bend = p - share * value - shift, 1 - rise, 2 * inner * value * rise
+        p = p - beyond * slope / (slope * slope - 0.5 * beyond * bend)
     return p
 
 

@@ -40,6 +40,14 @@ def test_solves_its_differential_equation(known):
     np.testing.assert_allclose(fine, expected, rtol=0, atol=1e-5 * np.ptp(expected))
 
 
+@pytest.mark.parametrize("word", ["domain_wall", "domain_wall:biased"])
+@pytest.mark.parametrize("first", [-9000.0, 4000.0, 12000.0])
+def test_a_record_that_begins_at_a_field_went_there_from_an_unpolarized_state(word, first):
+    begun = displacement([first, 0.5 * first], word, **smith.DW1)
+    way = displacement(path(0, first, points=800), word, **smith.DW1)
+    assert begun[0] == pytest.approx(way[-1], rel=1e-6)
+
+
 @pytest.mark.parametrize("known", [smith.DW1, smith.DW2])
 def test_loop_of_figure_4(known):
     """Span 11.5 um and width 12 % between -1 and 13.5 kV/m; closed from the third cycle on."""
