@@ -96,10 +96,11 @@ def likeliest(case: Case, first: Fit) -> Fit | None:
 
 
 def short_list(promising: list[Candidate]) -> list[Candidate]:
-    """The effects to be refitted, of those that score, the best first: as many as that, in the order of
-    `simpler_first`, and behind these every other disturbance."""
-    listed, others = promising[:SHORTLIST], promising[SHORTLIST:]
-    return simpler_first(listed) + [item for item in others if is_disturbance(item)]
+    """The effects to be refitted, of those that score, the best first: as many as that, by `simpler_first`, behind the
+    first of them the disturbances, and behind these every other disturbance."""
+    listed, others = simpler_first(promising[:SHORTLIST]), promising[SHORTLIST:]
+    listed[1:] = sorted(listed[1:], key=is_disturbance, reverse=True)
+    return listed + [item for item in others if is_disturbance(item)]
 
 
 def simpler_first(candidates: list[Candidate]) -> list[Candidate]:

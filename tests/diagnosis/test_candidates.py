@@ -135,6 +135,12 @@ def test_a_disturbance_is_on_the_short_list_whatever_scores_more():
     ]
 
 
+def test_disturbances_of_the_short_list_are_refitted_behind_the_first_effect():
+    words = ["saturation", "creep", "drift", "quadratic_gain", "periodic_disturbance"]
+    promising = [Candidate.of([Score(word, 1 / place)]) for place, word in enumerate(words, 1)]
+    assert [item.score.effect for item in candidates.short_list(promising)] == [words[i] for i in (0, 2, 4, 1, 3)]
+
+
 @pytest.mark.parametrize(
     ("listed", "explains", "expected"),
     [(True, False, "all"), (True, True, "two"), (False, False, "all"), (False, True, "none")],
