@@ -6,7 +6,7 @@ with any effect and without.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.undetermined import mechanics_of
 
@@ -28,9 +29,11 @@ DRAWS = 240  # points along the directions of the curvature, each as far as the 
 DRAWS_SOLVED = 60  # the same where each costs a solution for what the response is linear in, or for what was before
 
 
-def judged(case: Case, fit: Fit) -> tuple[Case, Fit]:
-    """The case of which only those records judge that can, and the fit in it; as they are where all can."""
-    open_records = left_open(case, fit)
+def judged(case: Case, fit: Fit, accounts: Iterable[Fit] = ()) -> tuple[Case, Fit]:
+    """The case of which only those records judge that can, and the fit in it; as they are where all can. accounts: the
+    model with effects; where one leads to the noise, it is at that on all records."""
+    led = any(adequate(case, fit, account) for account in accounts)
+    open_records = [] if led else left_open(case, fit)
     if not open_records:
         return case, fit
     names = listed([record.name for record in open_records])

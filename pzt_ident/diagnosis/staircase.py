@@ -68,7 +68,7 @@ def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase
     aged = None if aged and aged.last.verdict == "refused" else aged
     if aged and (aged.last.verdict in SETTLED or not case.budget.allows("records that start at rest", WHOLE)):
         return aged
-    judging, fit = judged(case, first)
+    judging, fit = judged(case, first, diagnosis.fits if diagnosis else ())
     staircase = improve_judged(judging, fit, on_step, diagnosis if judging is case else None)
     if judging is not case:
         staircase.case = staircase.case or judging

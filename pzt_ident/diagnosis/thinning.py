@@ -75,8 +75,9 @@ def diagnosed(case: Case, first: First) -> Diagnosis:
 
 def diagnosed_in(case: Case, first: Fit) -> Diagnosis:
     """The diagnosis of a fit, by the records that can judge it."""
-    judging, fit = judged(case, first)
-    return with_faults(judging, diagnose(judging, fit))
+    diagnosis = diagnose(case, first)
+    judging, fit = judged(case, first, diagnosis.fits)
+    return with_faults(judging, diagnosis if judging is case else diagnose(judging, fit))
 
 
 def thinned(case: Case) -> Case | None:

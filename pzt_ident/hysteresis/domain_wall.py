@@ -148,7 +148,9 @@ def virgin(u, per_width, coupling, pinning, reversible):
     """P_irr / P_s at u, on the way there from an unpolarized state at zero field."""
     pin, step = 0.0, u / STEPS_TO_FIRST
     for i in range(STEPS_TO_FIRST):
-        pin, _ = irreversible_step(pin, i * step, (i + 1) * step, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        pin, _ = irreversible_step(
+            pin, i * step, (i + 1) * step, ANHYSTERETIC, per_width, coupling, pinning, reversible
+        )
     return pin
 
 

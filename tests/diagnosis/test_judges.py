@@ -52,6 +52,12 @@ def test_what_slow_drives_leave_open_of_a_mode_its_ringing_does_not_judge():
     assert by_record(other, again) == by_record(case, fit)
 
 
+def test_where_an_effect_leads_to_the_noise_on_all_records_all_can_judge():
+    case = made(ALL, USES)
+    fit, account = beside(case, 0.5), beside(case, 1.5)
+    assert judged(case, fit, [account]) == (case, fit) != judged(case, fit, [fit])
+
+
 def test_points_that_fit_as_well_do():
     case = made(ALL, USES)
     fit = beside(case, 1.5)
