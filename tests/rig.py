@@ -59,12 +59,21 @@ def response(chain, parameters, *drives, dt=1e-3, **more):
     """Response of one candidate, (axes, samples), or (samples,) for one axis. Parameters as named in `Model.names`;
     those that belong to an effect are at their null unless given."""
     chosen = [blocks[item] if isinstance(item, str) else item for item in chain]
-    named = {f"{block.name}.{word}": p.effect for block in chosen for word, p in block.parameters().items() if p.effect}
-    made = model(*chain, *{named[name] for name in parameters if name in named}, axes=len(drives))
-    nulls = {entry.name: entry.parameter.null for entry in made.entries if entry.parameter.effect}
+    made = model(*chain, *effects_of(chosen, parameters), axes=len(drives))
+    nulls = {entry.name: entry.parameter.null for entry in made.entries if entry.parameter.effects}
     theta = np.array([[(nulls | parameters)[name] for name in made.names]])
     found = simulate(made, record(*drives, dt=dt, **more), theta)[0]
     return found if len(drives) > 1 else found[0]
+
+
+def effects_of(chosen, names):
+    """The effects to which parameters of some blocks belong; of several forms that share them the first."""
+    declared = [(f"{block.name}.{word}", item) for block in chosen for word, item in block.parameters().items()]
+    owners = [item.effects for name, item in declared if name in names and item.effects]
+    only = {items[0] for items in owners if len(items) == 1}
+    shared = [items for items in owners if only.isdisjoint(items)]
+    common = [item for item in shared[0] if all(item in items for items in shared)] if shared else []
+    return only | {*common[:1]}
 
 
 def stage_of(chain, measured, theta):

@@ -181,7 +181,7 @@ def sliding(identified: Identified) -> Identified:
     """Without friction in its equation of motion, which for small motions is a spring."""
     theta = identified.theta.copy()
     for column, entry in enumerate(identified.chain.entries):
-        if (entry.parameter.effect or "").startswith("friction") and entry.parameter.null is not None:
+        if entry.parameter.effect_word == "friction" and entry.parameter.null is not None:
             theta[column] = entry.parameter.null
     return replace(identified, theta=theta)
 

@@ -207,7 +207,7 @@ def nulls(item: str) -> list[str]:
         (word, declared)
         for host in blocks
         for word, declared in host.parameters().items()
-        if declared.effect in (block.name, block.item()) and declared.null is not None and declared.scale != "log"
+        if {block.name, block.item()} & {*declared.effects} and declared.null is not None and declared.scale != "log"
     ]
     of_block = [(word, declared) for word, declared in block.parameters().items() if declared.null is not None]
     values = {re.sub(r"_\d+$", "", word) if d.count else word: d.null for word, d in of_block or of_host}

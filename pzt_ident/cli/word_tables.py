@@ -8,6 +8,7 @@ import click
 
 from pzt_ident.atlas.href import href
 from pzt_ident.cli.table import grouped_by_range, table
+from pzt_ident.data.notation import either
 from pzt_ident.model.registry import blocks, word_of
 
 Facts = dict[str, Any]
@@ -75,7 +76,7 @@ def _number(value: float | None) -> str:
 def _meaning(row: Facts) -> str:
     """What a parameter is, and when it is searched for."""
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds or another value."
-    effect = "" if row["effect"] is None else f" With {_needed(row['effect'])} only."
+    effect = f" With {either(map(_needed, row['effects']))} only." if row["effects"] else ""
     per_record = " Each record has its own." if row["per_record"] else ""
     per_record += " Of every axis but the first." if row["per_later_axis"] else ""
     apart = f" Wide bounds of `{row['adds_to']}` or of the rest of its block hide it: fix what is known."

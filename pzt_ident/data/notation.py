@@ -107,10 +107,15 @@ def power_of_ten(power: int) -> str:
     return "10" + str(power).translate(SUPERSCRIPTS)
 
 
-def listed(names: Iterable[str]) -> str:
+def listed(names: Iterable[str], last_word: str = "and") -> str:
     """a, b and c; empty where there is nothing."""
     *most, last = [*names] or [""]
-    return f"{', '.join(most)} and {last}" if most else last
+    return f"{', '.join(most)} {last_word} {last}" if most else last
+
+
+def either(names: Iterable[str]) -> str:
+    """a, b or c; empty where there is nothing."""
+    return listed(names, "or")
 
 
 def ranges(names: Iterable[str]) -> list[str]:

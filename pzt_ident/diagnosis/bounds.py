@@ -217,7 +217,7 @@ def given_name(case: Case, fit: Fit, i: int) -> str | None:
 def is_guessed(case: Case, entry: Entry) -> bool:
     """Whether the declared bounds of a parameter of the job's own model are a guess of its order of magnitude: it has
     a dimension."""
-    own = entry.block.name in map(word_of, case.words) and entry.parameter.effect is None
+    own = entry.block.name in map(word_of, case.words) and not entry.parameter.effects
     return own and entry.parameter.scale == "log" and entry.parameter.unit != "1" and entry.parameter.end is None
 
 

@@ -113,7 +113,7 @@ class Case:
             f"{axis}.{block.name}.{word}": parameter.null
             for axis, block in product(unmeasured, chain)
             for word, parameter in block.parameters().items()
-            if {block.name, word_of(parameter.effect or "")} & added
+            if {block.name, parameter.effect_word} & added
             and parameter.null is not None
             and Chain.allowed_without_response(block, parameter)
             if f"{block.name}.{word}" not in (*self.shared, *self.specs)

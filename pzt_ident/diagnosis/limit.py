@@ -23,7 +23,7 @@ def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
     own = {
         name: entry
         for name, entry in entries_of(fit).items()
-        if word_of(effect) in (entry.block.name, word_of(entry.parameter.effect or ""))
+        if word_of(effect) in (entry.block.name, entry.parameter.effect_word)
     }
     amounts = {name for name, entry in own.items() if entry.parameter.null is not None}
     limits = {*fit.on_bounds, *small_shapes(fit)}

@@ -42,7 +42,9 @@ def held_by(case: Case, effects: tuple[str, ...], item: str) -> object:
     if not issubclass(blocks[item], Term):
         return item
     names, chain = {word_of(item), item}, blocks.chain((*case.words, *effects))
-    declared = ((block, word) for block in chain for word, each in block.parameters().items() if each.effect in names)
+    declared = (
+        (block, word) for block in chain for word, each in block.parameters().items() if names & {*each.effects}
+    )
     return frozenset((*declared, *((block, name) for block in chain for name in names if name in block.forms)))
 
 

@@ -185,7 +185,7 @@ def fit_behind(case: Case, first: Fit, diagnosis: Diagnosis) -> Fit | None:
 def only_adds(fit: Fit) -> bool:
     """Whether all parameters of the last effect of a fit are added to others."""
     word, entries = word_of(fit.effects[-1]), fit.problem.model.entries
-    own = [item.parameter for item in entries if word in (item.block.name, word_of(item.parameter.effect or ""))]
+    own = [item.parameter for item in entries if word in (item.block.name, item.parameter.effect_word)]
     return bool(own) and all(parameter.adds_to for parameter in own)
 
 

@@ -123,7 +123,7 @@ def mechanics_of(fit: Fit) -> dict[int, Entry]:
     return {
         column: entry
         for column, entry in entries.items()
-        if entry.block.place == Place.MECHANICS and not entry.parameter.effect
+        if entry.block.place == Place.MECHANICS and not entry.parameter.effects
     }
 
 

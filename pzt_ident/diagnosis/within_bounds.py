@@ -33,7 +33,7 @@ def adding_effects(case: Case, fit: Fit) -> list[str]:
     beyond = {*beyond_names(case, fit)}
     blocks = {item.block for item in fit.problem.model.entries if item.name in beyond}
     parameters = [parameter for block in blocks for parameter in block.parameters().values()]
-    adding = {parameter.effect for parameter in parameters if parameter.adds_to and parameter.effect}
+    adding = {effect for parameter in parameters if parameter.adds_to for effect in parameter.effects}
     return [effect for effect in applicable(case, fit.effects) if effect in adding]
 
 

@@ -212,7 +212,7 @@ class Motion(Rubbing, Term):
 
 
 class CoulombMotion(Rubbing, Term):
-    """Dry friction of the moving mass: m x'' + b x' + k (x + dry tanh(x' / speed)) = k f; b is the viscous part.
+    """Dry friction of the moving mass: m x'' + b x' + k (x + friction tanh(x' / speed)) = k f; b is the viscous part.
 
     Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
     4, 176.
@@ -234,14 +234,14 @@ class Slip(Rubbing, Term):
 
 class Elastoplastic(Rubbing, Term):
     """Bristles of the guide only bend at first, then slide, as the mass moves: m x'' + b x' + k (x + F) = k f,
-    dF/dx = sliding / bend while F sgn x' < elastic g, beyond it (sliding / bend) (g - F sgn x') / (g - elastic g),
-    g = sliding (1 + excess exp(-(x' / fading)^2)).
+    dF/dx = friction / reach while F sgn x' < elastic g, beyond it (friction / reach) (g - F sgn x') / (g - elastic g),
+    g = friction (1 + stiction exp(-(x' / stribeck)^2)).
 
     Dupont, Hayward, Armstrong & Altpeter (2002), IEEE Trans. Autom. Control 47, 787, with a straight transition. Unlike
     LuGre's, it does not drift under a force that stays below.
     """
 
-    trials = {"elastic": 2, "fading": 1}
+    trials = {"elastic": 2, "stribeck": 1}
     solvable = False
 
 

@@ -202,7 +202,7 @@ class Simulator:
         response = self.simulate(complete)[0]
         sizes = self.additions.sizes(self.record.response[list(self.model.measured)] - response, theta)
         of_start = {block.name for block in self.model.blocks if block.lead}
-        ahead = {entry.parameter.effect or entry.block.name for entry in self.model.amounts} - of_start
+        ahead = {entry.parameter.effect_word or entry.block.name for entry in self.model.amounts} - of_start
         moved = response - self.simulate(theta)[0] if ahead else response
         return sizes | dict.fromkeys(ahead, np.std(moved[:, self.record.settle :], axis=1))
 

@@ -160,7 +160,7 @@ def _drop_parameters(document: Any, job: Job, effects: Sequence[str], words: Seq
         block, _, word = name.rpartition(".")
         owner = block.rpartition(".")[2]
         parameter = blocks[owner].parameters().get(word) if owner in blocks else None
-        if owner in gone or (parameter and word_of(parameter.effect or "") in gone):
+        if owner in gone or (parameter and parameter.effect_word in gone):
             del document["parameters"][name]
     if "parameters" in document and not document["parameters"]:
         del document["parameters"]

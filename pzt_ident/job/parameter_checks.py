@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from pzt_ident.data.notation import either
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job.chain import ChainParts
 from pzt_ident.job.document import Document, Loc
@@ -89,8 +90,11 @@ def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapp
             f"is not in the form of {block!r} that is chosen",
             f"take it out; `pzt-ident show {block}` says which has it",
         )
-        if declared.effect:
-            fault = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
+        if declared.effects:
+            fault = (
+                f"belongs to the effect {either(map(repr, declared.effects))}",
+                f"add `effects: [{declared.effects[0]}]`",
+            )
         elif declared.per_record:
             fault = "is solved for in every record by itself", "take it out"
         elif declared.per == "stage":

@@ -9,6 +9,8 @@ from pzt_ident.model.first_order_hold import mode, oscillate
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
+RUBBING = "friction.motion", "friction.coulomb_motion", "friction.slip", "friction.elastoplastic"
+
 
 @blocks.register
 class Lumped(Oscillator):
@@ -29,29 +31,30 @@ class Lumped(Oscillator):
     cubic = Parameter(
         "1/response^2", (-0.4, 2), "Cubic over linear stiffness, k3 / k.", null=0, effect="cubic_stiffness"
     )
-    friction = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.motion")
+    friction = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect=RUBBING)
     reach = Parameter(
         "response",
         (1e-3, 0.5),
         "Displacement over which friction builds up.",
         scale="log",
-        effect="friction.motion",
+        effect=("friction.motion", "friction.slip", "friction.elastoplastic"),
         limit=PLAY,
         small_to="friction",
     )
     stiction = Parameter(
-        "1", (0, 0.5), "Excess of the break-away force, as a share of friction.", null=0, effect="friction.motion"
+        "1",
+        (0, 0.5),
+        "Excess of the break-away force, as a share of friction.",
+        null=0,
+        effect=("friction.motion", "friction.elastoplastic"),
     )
     stribeck = Parameter(
         "response/s",
         (1e-3, 100),
         "Speed at which stiction has faded.",
         scale="log",
-        effect="friction.motion",
+        effect=("friction.motion", "friction.elastoplastic"),
         end="both",
-    )
-    dry = Parameter(
-        "response", (0, 0.1), "Coulomb friction over the stiffness.", null=0, effect="friction.coulomb_motion"
     )
     speed = Parameter(
         "response/s",
@@ -60,51 +63,16 @@ class Lumped(Oscillator):
         scale="log",
         effect="friction.coulomb_motion",
     )
-
-    slip = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.slip")
-    give = Parameter(
-        "response",
-        (1e-3, 0.5),
-        "Displacement at which the last element slips.",
-        scale="log",
-        effect="friction.slip",
-        limit=PLAY,
-        small_to="slip",
-    )
     spacing = Parameter(
         "1",
         (0.1, 1),
-        "That of each element over that of the next; 1 where all slip at once.",
+        "Reach of each element over that of the next, the last of which has all; 1 where all slip at once.",
         scale="log",
         effect="friction.slip",
         end="upper",
     )
-
-    sliding = Parameter(
-        "response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.elastoplastic"
-    )
-    bend = Parameter(
-        "response",
-        (1e-3, 0.5),
-        "Sliding friction over the stiffness of the bristles.",
-        scale="log",
-        effect="friction.elastoplastic",
-        limit=PLAY,
-        small_to="sliding",
-    )
     elastic = Parameter(
         "1", (0, 0.95), "Share of the friction up to which bristles only bend.", effect="friction.elastoplastic"
-    )
-    excess = Parameter(
-        "1", (0, 0.5), "Excess of the break-away force, as a share.", null=0, effect="friction.elastoplastic"
-    )
-    fading = Parameter(
-        "response/s",
-        (1e-3, 100),
-        "Speed at which that excess has faded.",
-        scale="log",
-        effect="friction.elastoplastic",
-        end="both",
     )
 
     begun = Parameter(
@@ -189,9 +157,9 @@ class RubbingAndStiffening(Rubbing):
 class BendingAndSliding(Lumped):
     """m x'' + b x' + k (x + F) = k f, likewise, F of bristles that only bend at first."""
 
-    def prepare(mass, damping, stiffness, load, extra_damping, sliding, bend, elastic, excess, fading, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, friction, reach, stiction, stribeck, elastic, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
-        return sliding, bend, excess, elastic, 1 / (fading * dt), *linear
+        return friction, reach, stiction, elastic, 1 / (stribeck * dt), *linear
 
     def start(u, force, reach, stiction, elastic, fast, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, u, 0.0
@@ -207,9 +175,9 @@ class BendingAndSliding(Lumped):
 class BendingSlidingAndStiffening(BendingAndSliding):
     """The same under a spring that stiffens, which enters a step of friction as its chord."""
 
-    def prepare(mass, damping, stiffness, load, extra_damping, cubic, sliding, bend, elastic, excess, fading, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, friction, reach, stiction, stribeck, elastic, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
-        return cubic, sliding, bend, excess, elastic, 1 / (fading * dt), *linear
+        return cubic, friction, reach, stiction, elastic, 1 / (stribeck * dt), *linear
 
     def start(u, cubic, force, reach, stiction, elastic, fast, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
@@ -226,13 +194,13 @@ class BendingSlidingAndStiffening(BendingAndSliding):
 
 
 class Sliding(Lumped):
-    """m x'' + b x' + k (x + dry tanh(x' / speed)) = k f, likewise implicit in x' = v omega, which is linear in the
+    """m x'' + b x' + k (x + friction tanh(x' / speed)) = k f, likewise implicit in x' = v omega, which is linear in the
     friction.
     """
 
-    def prepare(mass, damping, stiffness, load, extra_damping, dry, speed, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, friction, speed, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
-        return dry, sqrt(stiffness / (mass + load)) / speed, *linear
+        return friction, sqrt(stiffness / (mass + load)) / speed, *linear
 
     def start(u, dry, fast, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, u
@@ -246,9 +214,9 @@ class Sliding(Lumped):
 class SlidingAndStiffening(Sliding):
     """The same under a spring that stiffens, which enters v at the x that friction as it was leads to."""
 
-    def prepare(mass, damping, stiffness, load, extra_damping, cubic, dry, speed, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, friction, speed, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
-        return cubic, dry, sqrt(stiffness / (mass + load)) / speed, *linear
+        return cubic, friction, sqrt(stiffness / (mass + load)) / speed, *linear
 
     def start(u, cubic, dry, fast, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
@@ -266,12 +234,12 @@ class SlidingAndStiffening(Sliding):
 
 class Slipping(Lumped):
     """m x'' + b x' + k (x + F) = k f, likewise implicit in x, F the sum of four elements that stretch and slip:
-    dF_i/dx = (slip / 4) / r_i while |F_i| < slip / 4, r_i = give spacing^(4 - i).
+    dF_i/dx = (friction / 4) / r_i while |F_i| < friction / 4, r_i = reach spacing^(4 - i).
     """
 
-    def prepare(mass, damping, stiffness, load, extra_damping, slip, give, spacing, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, friction, reach, spacing, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
-        return *elements(slip / 4, give, spacing), *linear
+        return *elements(friction / 4, reach, spacing), *linear
 
     def start(u, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, u, 0.0, 0.0, 0.0, 0.0
@@ -287,9 +255,9 @@ class Slipping(Lumped):
 class SlippingAndStiffening(Slipping):
     """The same under a spring that stiffens, which enters a step of friction as its chord."""
 
-    def prepare(mass, damping, stiffness, load, extra_damping, cubic, slip, give, spacing, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, friction, reach, spacing, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
-        return cubic, *elements(slip / 4, give, spacing), *linear
+        return cubic, *elements(friction / 4, reach, spacing), *linear
 
     def start(u, cubic, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0, 0.0, 0.0, 0.0
@@ -306,9 +274,9 @@ class SlippingAndStiffening(Slipping):
         return w, v, now, a, b, c, d, now + w
 
 
-def elements(most, give, spacing):
+def elements(most, reach, spacing):
     """The force at which each of four elements slips, and their stiffnesses."""
-    stiff, near, nearer = most / give, 1 / spacing, 1 / spacing**2
+    stiff, near, nearer = most / reach, 1 / spacing, 1 / spacing**2
     return most, stiff * near * nearer, stiff * nearer, stiff * near, stiff
 
 

@@ -123,23 +123,27 @@ class Block:
     @classmethod
     def amounts(cls) -> int:
         """Number of parameters of which each record has its own, but for those of an effect in its equation."""
-        return sum(declared.per_record and not declared.effect for declared in cls.parameters().values())
+        return sum(declared.per_record and not declared.effects for declared in cls.parameters().values())
 
     @classmethod
     def effects(cls) -> set[str]:
         """The words of the effects that act inside the equation of the block."""
-        return {declared.effect.partition(".")[0] for declared in cls.parameters().values() if declared.effect}
+        return {declared.effect_word for declared in cls.parameters().values() if declared.effects}
 
     @classmethod
     def holds(cls, effect: type[Block]) -> bool:
         """Whether an effect, in its form, acts inside the equation of the block."""
-        return any(declared.effect in (effect.name, effect.item()) for declared in cls.parameters().values())
+        return not {effect.name, effect.item()}.isdisjoint(cls._items())
 
     @classmethod
     def distinguishes(cls, effect: type[Block]) -> bool:
         """Whether the form of an effect is another one in the equation of the block than its first form."""
-        own = {effect.item()} & {*cls.forms, *(declared.effect for declared in cls.parameters().values())}
-        return effect.item() == effect.name or bool(own)
+        return effect.item() == effect.name or effect.item() in {*cls.forms, *cls._items()}
+
+    @classmethod
+    def _items(cls) -> set[str]:
+        """The effects inside its equation, in each form that has parameters of its own."""
+        return {item for declared in cls.parameters().values() for item in declared.effects}
 
     @classmethod
     @cache

@@ -70,7 +70,7 @@ class Chain:
     def terms(self, block: type[Block]) -> set[str]:
         """The listed effects that act inside a block's equation."""
         names = {item for term in self.listed_terms for item in (term.name, term.item())}
-        return names & {parameter.effect for parameter in block.parameters().values() if parameter.effect}
+        return names & {item for parameter in block.parameters().values() for item in parameter.effects}
 
     def form_of(self, block: type[Block]) -> type[Block]:
         """The block, with the listed effects in its equation."""
@@ -98,7 +98,7 @@ class Chain:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
                     plain, per = f"{block.name}.{word}", self._per(block, word, parameter)
-                    if parameter.effect and parameter.effect not in self._listed:
+                    if parameter.effects and self._listed.isdisjoint(parameter.effects):
                         continue
                     name = plain if per == "stage" else f"{prefix}{plain}{suffix}"
                     exists = measured or (name in given and self.allowed_without_response(block, parameter))
@@ -128,7 +128,7 @@ class Chain:
         chain, left = copy(self), [term for term in self.listed_terms if refused(term)]
         gone = {name for term in left for name in (term.name, term.item())}
         chain.listed_terms = tuple(term for term in self.listed_terms if term not in left)
-        kept = [column for column, entry in enumerate(self.entries) if entry.parameter.effect not in gone]
+        kept = [column for column, entry in enumerate(self.entries) if gone.isdisjoint(entry.parameter.effects)]
         chain._listed, chain.entries = self._listed - gone, tuple(self.entries[column] for column in kept)
         return chain, kept
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any
 
-from pzt_ident.data.notation import listed
+from pzt_ident.data.notation import either, listed
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.block import Term
 from pzt_ident.model.parameter import Form, Setting
@@ -108,7 +108,7 @@ def description_of(name: str) -> Facts:
 def _parameters_of_effect(effect: str) -> list[Facts]:
     """The parameters of all blocks that belong to an effect."""
     rows = [row | {"name": f"{block.name}.{row['name']}"} for block in blocks for row in _parameters(block)]
-    return [row for row in rows if row["effect"] and word_of(row["effect"]) == effect]
+    return [row for row in rows if effect in map(word_of, row["effects"])]
 
 
 def _block(name: str) -> Facts:
@@ -153,7 +153,7 @@ def _labelled(block: type[Any]) -> dict[str, type[Any]]:
 
 def _one_of(labels: list[str]) -> str:
     """Forms as `a`, `b` or `c`, without the first and the last mark."""
-    return "` or `".join(filter(None, ["`, `".join(labels[:-1]), *labels[-1:]]))
+    return either(f"`{label}`" for label in labels)[1:-1]
 
 
 def _forms(block: type[Any]) -> list[tuple[str, str]]:
@@ -175,7 +175,7 @@ def _choice(block: type[Any], word: str, value: str) -> str:
 def _parameters(block: type[Any]) -> list[Facts]:
     """The parameters of a block in all its forms, or in the form that was chosen; one that forms declare differently
     has a row for each declaration."""
-    keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_later_axis", "per_record", "adds_to", "doc")
+    keys = ("unit", "bounds", "null", "value", "scale", "effects", "per_later_axis", "per_record", "adds_to", "doc")
     variants = _variants(block)
     owners: dict[tuple[Any, ...], list[str]] = {}
     for label, found in variants.items():

@@ -25,7 +25,8 @@ class Parameter:
     nothing changes, or both, as of a time constant that is far longer than a record; None if there is none.
     `limit` tells what else an effect is whose shape is on its lower bound, or whose amount is on any: "a play".
     `small_to` names the amount of the block of which a shape is at most SMALL in that limit, too.
-    `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
+    `effect` names the effect that the parameter belongs to, or several of its forms; unless the job lists it, the
+    parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
     setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
     first, relative to the first one, which has the null.
@@ -42,7 +43,7 @@ class Parameter:
     doc: str
     null: float | None = None
     scale: Literal["linear", "log"] = "linear"
-    effect: str | None = None
+    effect: str | tuple[str, ...] | None = None
     count: int | str | None = None
     per: Literal["axis", "stage", "later axis"] = "axis"
     per_record: bool = False
@@ -57,6 +58,16 @@ class Parameter:
 
     def __set_name__(self, owner: type, name: str) -> None:
         object.__setattr__(self, "name", name)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The effect that it belongs to, or the forms of it."""
+        return (self.effect,) if isinstance(self.effect, str) else self.effect or ()
+
+    @property
+    def effect_word(self) -> str:
+        """The word of that effect; empty where it belongs to none."""
+        return self.effects[0].partition(".")[0] if self.effects else ""
 
     @property
     def per_later_axis(self) -> bool:

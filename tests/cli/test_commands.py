@@ -334,7 +334,7 @@ class TestWords:
             "null": None,
             "value": None,
             "scale": "linear",
-            "effect": None,
+            "effects": [],
             "per_later_axis": False,
             "per_record": False,
             "adds_to": None,

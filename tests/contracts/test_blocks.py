@@ -128,7 +128,7 @@ def test_effect_has_a_null(item):
 @pytest.mark.parametrize("item", [item for item in ITEMS if issubclass(blocks[item], Term)])
 def test_term_is_a_parameter_of_a_block(item):
     assert not blocks[item].parameters()
-    known = {declared.effect for block in blocks for declared in block.parameters().values()}
+    known = {item for block in blocks for declared in block.parameters().values() for item in declared.effects}
     assert known & {blocks[item].name, blocks[item].item()}
 
 
@@ -350,7 +350,7 @@ SUMMED = [
 @pytest.mark.parametrize(("word", "part", "whole"), SUMMED)
 def test_what_adds_to_another_parameter_is_one_with_it(word, part, whole):
     """A payload is a larger moving mass."""
-    made = model(word, block_of(word).parameters()[part].effect)
+    made = model(word, *block_of(word).parameters()[part].effects)
     names = [entry.name for entry in made.entries]
     apart = candidates(made, SPAN, 5, seed=3)
     together = apart.copy()

@@ -116,6 +116,7 @@ DECLARED = [
     (GAIN, 'remedy = "Linearise the drive."', "", "Gain.remedy: is an effect without `remedy`"),
     (GAIN, ", null=0", "", "Gain: is an effect without a null"),
     (GAIN, "null=0", "null=0, effect=3", "Gain.bend: effect 3 is no such thing"),
+    (GAIN, "null=0", 'null=0, effect=("creep", 3)', r"Gain.bend: effect \('creep', 3\) is not a tuple of words"),
     (GAIN, '("saturation",)', "None", "Gain.look_alikes: None is not a tuple of words"),
     (GAIN, "tau = ", "forms = {'creep': 3}\n    tau = ", "Gain.forms: .* is not a table of blocks"),
     (GAIN, "tau = ", "trials = None\n    tau = ", "Gain.trials: None is not a table"),

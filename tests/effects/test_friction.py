@@ -147,13 +147,13 @@ def test_ringing_wears_off_within_the_reach():
     assert np.ptp(rubbing[1000:]) < 0.02 * np.ptp(free[1000:])
 
 
-@pytest.mark.parametrize(("dry", "speed", "cubic"), [(0.3, 2e3, 0.0), (0.3, 2e3, 2e-3), (1.0, 5e3, 0.0)])
-def test_a_chirp_moves_it_under_coulomb_friction_as_the_equation_of_motion_says(dry, speed, cubic):
+@pytest.mark.parametrize(("friction", "speed", "cubic"), [(0.3, 2e3, 0.0), (0.3, 2e3, 2e-3), (1.0, 5e3, 0.0)])
+def test_a_chirp_moves_it_under_coulomb_friction_as_the_equation_of_motion_says(friction, speed, cubic):
     """Error of second order in the sample time."""
-    law = {"dry": dry, "speed": speed, "cubic": cubic}
+    law = {"friction": friction, "speed": speed, "cubic": cubic}
 
     def change(f, x, v):
-        pull = STIFFNESS * (f - x - cubic * x**3 - dry * math.tanh(v / speed))
+        pull = STIFFNESS * (f - x - cubic * x**3 - friction * math.tanh(v / speed))
         return v, (pull - DAMPING * v) / MASS
 
     named = STAGE | {f"lumped.{word}": value for word, value in law.items()}
@@ -171,7 +171,7 @@ def test_a_chirp_moves_it_under_coulomb_friction_as_the_equation_of_motion_says(
 def test_slowly_driven_coulomb_friction_follows_the_speed(speed):
     force = path(0, 8, 3, 5, points=400)
     rate = np.append(0, np.diff(force)) / 1e-2
-    found = response(["lumped"], STAGE | {"lumped.dry": 0.3, "lumped.speed": speed}, force, dt=1e-2)
+    found = response(["lumped"], STAGE | {"lumped.friction": 0.3, "lumped.speed": speed}, force, dt=1e-2)
     expected = force - 0.3 * np.tanh(rate / speed)
     assert np.median(np.abs(found - expected)) < 1e-5
 
@@ -179,34 +179,34 @@ def test_slowly_driven_coulomb_friction_follows_the_speed(speed):
 SLIP = 0.3
 
 
-def slipping(force, dt, give=0.4, spacing=0.5, cubic=0.0):
-    law = {"lumped.slip": SLIP, "lumped.give": give, "lumped.spacing": spacing, "lumped.cubic": cubic}
+def slipping(force, dt, reach=0.4, spacing=0.5, cubic=0.0):
+    law = {"lumped.friction": SLIP, "lumped.reach": reach, "lumped.spacing": spacing, "lumped.cubic": cubic}
     return response(["lumped"], STAGE | law, force, dt=dt)
 
 
-def stretched(pulls, dx, give, spacing):
+def stretched(pulls, dx, reach, spacing):
     """The forces of four elements after a step of the displacement."""
-    reach = give * spacing ** np.arange(3, -1, -1)
-    return np.clip(pulls + SLIP / 4 / reach * dx, -SLIP / 4, SLIP / 4)
+    reaches = reach * spacing ** np.arange(3, -1, -1)
+    return np.clip(pulls + SLIP / 4 / reaches * dx, -SLIP / 4, SLIP / 4)
 
 
-def slipped(force, dt, give=0.4, spacing=0.5, cubic=0.0, steps=16):
+def slipped(force, dt, reach=0.4, spacing=0.5, cubic=0.0, steps=16):
     """m x'' + b x' + k (x + c x^3 + F) = k f by many small steps of the midpoint."""
     h, x, v, pulls, found = dt / steps, force[0], 0.0, np.zeros(4), [force[0]]
     for before, after in pairwise(force.tolist()):
         for k in range(steps):
             f, middle = before + (after - before) * (k + 0.5) / steps, x + v * h / 2
-            pull = stretched(pulls, v * h / 2, give, spacing).sum()
+            pull = stretched(pulls, v * h / 2, reach, spacing).sum()
             push = h * STIFFNESS * (f - middle - cubic * middle**3 - pull) / MASS
             lost = h * DAMPING / MASS / 2
             new = (v * (1 - lost) + push) / (1 + lost)
             dx = h * (v + new) / 2
-            x, v, pulls = x + dx, new, stretched(pulls, dx, give, spacing)
+            x, v, pulls = x + dx, new, stretched(pulls, dx, reach, spacing)
         found.append(x)
     return np.array(found)
 
 
-@pytest.mark.parametrize("law", [{}, {"spacing": 1.0}, {"cubic": 2e-3}, {"give": 4.0, "spacing": 0.2}])
+@pytest.mark.parametrize("law", [{}, {"spacing": 1.0}, {"cubic": 2e-3}, {"reach": 4.0, "spacing": 0.2}])
 def test_a_chirp_moves_elements_that_slip_as_the_equation_of_motion_says(law):
     errors = errors_under_a_chirp(partial(slipping, **law), partial(slipped, **law), 2e-5, 1e-5)
     assert errors[1] < 3e-3
@@ -225,35 +225,35 @@ def test_slowly_driven_elements_are_plays_of_the_displacement(spacing):
     assert np.ptp(force - x) == pytest.approx(2 * SLIP)
 
 
-ELASTIC = {"sliding": 0.3, "bend": 0.2, "elastic": 0.5, "excess": 0.0, "fading": 1.0, "cubic": 0.0}
+ELASTIC = {"friction": 0.3, "reach": 0.2, "elastic": 0.5, "stiction": 0.0, "stribeck": 1.0, "cubic": 0.0}
 
 
 def bending(force, dt, **law):
     return response(["lumped"], STAGE | {f"lumped.{word}": x for word, x in (ELASTIC | law).items()}, force, dt=dt)
 
 
-def slope_of_bristles(pull, way, level, sliding, bend, elastic):
+def slope_of_bristles(pull, way, level, friction, reach, elastic):
     """dF/dx in the direction `way`: that of bristles which only bend, or slide more and more."""
     along = way * pull
-    return sliding / bend * np.minimum(1, (level - along) / (level * (1 - elastic)))
+    return friction / reach * np.minimum(1, (level - along) / (level * (1 - elastic)))
 
 
 def bent(force, dt, **law):
     """m x'' + b x' + k (x + c x^3 + F) = k f, integrated."""
     known = ELASTIC | law
-    sliding, bend, elastic = (known[word] for word in ("sliding", "bend", "elastic"))
+    friction, reach, elastic = (known[word] for word in ("friction", "reach", "elastic"))
 
     def change(f, x, v, pull):
-        level = sliding * (1 + known["excess"] * math.exp(-((v / known["fading"]) ** 2)))
+        level = friction * (1 + known["stiction"] * math.exp(-((v / known["stribeck"]) ** 2)))
         push = STIFFNESS * (f - x - known["cubic"] * x**3 - pull)
         way = 1.0 if v >= 0 else -1.0
-        return v, (push - DAMPING * v) / MASS, v * float(slope_of_bristles(pull, way, level, sliding, bend, elastic))
+        return v, (push - DAMPING * v) / MASS, v * float(slope_of_bristles(pull, way, level, friction, reach, elastic))
 
     return stepped(change, (force[0], 0.0, 0.0), force, dt)
 
 
 @pytest.mark.parametrize(
-    "law", [{}, {"cubic": 2e-3}, {"excess": 0.3, "fading": 2e3}, {"elastic": 0.0}, {"elastic": 0.9, "bend": 1.0}]
+    "law", [{}, {"cubic": 2e-3}, {"stiction": 0.3, "stribeck": 2e3}, {"elastic": 0.0}, {"elastic": 0.9, "reach": 1.0}]
 )
 def test_a_chirp_moves_bristles_that_only_bend_at_first_as_the_equation_of_motion_says(law):
     errors = errors_under_a_chirp(partial(bending, **law), partial(bent, **law), 2e-5, 1e-5)
@@ -293,10 +293,10 @@ def test_friction_and_a_bent_spring_are_in_one_equation():
     "law",
     [
         {"friction": 0.3, "reach": 0.2, "stiction": 0.2, "stribeck": 1.0},
-        {"dry": 0.3, "speed": 2.0},
-        {"dry": 0.3, "speed": 0.01},
-        {"slip": SLIP, "give": 0.4, "spacing": 0.5},
-        {"sliding": 0.3, "bend": 0.2, "elastic": 0.5, "excess": 0.2, "fading": 1.0},
+        {"friction": 0.3, "speed": 2.0},
+        {"friction": 0.3, "speed": 0.01},
+        {"friction": SLIP, "reach": 0.4, "spacing": 0.5},
+        {"friction": 0.3, "reach": 0.2, "elastic": 0.5, "stiction": 0.2, "stribeck": 1.0},
     ],
 )
 def test_friction_alone_is_friction_beside_a_spring_that_does_not_bend(law):

@@ -75,7 +75,7 @@ def check_loaded(block: Any, known: Any) -> None:
     forms = (block, *block.forms.values())
     references += [("contains", word) for form in forms for word in form.contains]
     references += [("equation_of", form.equation_of) for form in forms if form.equation_of]
-    references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
+    references += [(word, effect) for word, item in parameters(block).items() for effect in item.effects]
     for where, word in references:
         word = word.partition(".")[0]
         if word not in known:

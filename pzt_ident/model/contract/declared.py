@@ -16,7 +16,7 @@ UNIT_EXAMPLES = {"drive": "V", "response": "m", "first": "m"}
 FIELD_TYPES = {
     "unit": str,
     "doc": str,
-    "effect": str | None,
+    "effect": str | tuple | None,
     "count": int | str | None,
     "smooth": str | None,
     "adds_to": str | None,
@@ -119,14 +119,16 @@ def check_parameters(block: Any) -> None:
                 raise fault(
                     block, word, f"{fact} {getattr(item, fact)!r} is no such thing", f"see `{fact}` of Parameter"
                 )
+        if not all(isinstance(effect, str) for effect in item.effects):
+            raise fault(block, word, f"effect {item.effect!r} is not {TUPLE}", f"give {TUPLE}")
         _check_numbers(block, word, item)
         _check_unit(block, word, item)
         for fact, known in FIELD_WORDS.items():
             if getattr(item, fact) not in known:
                 message = f"unknown {fact} {getattr(item, fact)!r}"
                 raise fault(block, word, message, nearest(str(getattr(item, fact)), known))
-        nulls = [other.null for other in parameters(block).values() if other.effect == item.effect]
-        if item.effect and all(null is None for null in nulls):
+        peers = [other for other in parameters(block).values() if {*other.effects} & {*item.effects}]
+        if item.effects and all(other.null is None for other in peers):
             raise fault(
                 block, word, "belongs to an effect, but has no null", "give the value at which it has no effect"
             )

@@ -52,7 +52,7 @@ def _check_all_asked(block: Any) -> None:
     asked = {name for word in asking for name in arguments_of(block, word)}
     asked |= {*getattr(block, "weights", ()), *(item.smooth for item in parameters(block).values() if item.smooth)}
     for name, item in parameters(block).items():
-        if name not in asked and not item.per_record and not item.effect:
+        if name not in asked and not item.per_record and not item.effects:
             remedy = "name it among the arguments, or take it out of the declaration"
             raise fault(block, asking[0], f"does not ask for the parameter {name!r}", remedy)
 

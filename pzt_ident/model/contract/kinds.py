@@ -93,7 +93,7 @@ def _required(block: Any, word: str) -> bool:
     """Whether another declaration of the block makes an optional function necessary."""
     if word == "solve":
         return bool(block.solved)
-    effects = [item.effect for item in parameters(block).values() if item.effect and item.effect not in block.forms]
+    effects = {effect for item in parameters(block).values() for effect in item.effects} - block.forms.keys()
     terms = ("terms", "lift", "fade")
     return word in terms and (bool(effects) or any(getattr(block, term, None) is not None for term in terms))
 
