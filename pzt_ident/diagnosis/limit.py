@@ -10,7 +10,7 @@ import numpy as np
 from pzt_ident.diagnosis.bounds import continued, roomier
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit
-from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive, is_of_the_counts
+from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive, has_few_periods, is_of_the_counts
 from pzt_ident.diagnosis.unequal import differs_in_size
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.parameter import SMALL
@@ -80,6 +80,12 @@ def harmonic_of(fit: Fit, effect: str) -> str:
     if order := harmonic_of_the_drive(fit, effect):
         return f"harmonic {order} of the drive, as a nonlinearity of the stage makes it"
     return "as short as the counts of the sensor, which are such a line" if is_of_the_counts(fit, effect) else ""
+
+
+def curve_of(fit: Fit, effect: str) -> str:
+    """What an effect is in a model that is not adequate, if it is a line of few periods in the stroke; empty for any
+    other."""
+    return "of few periods in the stroke, as what any bend leaves is" if has_few_periods(fit, effect) else ""
 
 
 def size_of(fit: Fit, effect: str) -> str:

@@ -22,7 +22,15 @@ from pzt_ident.diagnosis.criteria import (
 )
 from pzt_ident.diagnosis.displaced import displaced_operator
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.limit import differs_by_record, harmonic_of, limit_of, own_bounds, settle_beyond, size_of
+from pzt_ident.diagnosis.limit import (
+    curve_of,
+    differs_by_record,
+    harmonic_of,
+    limit_of,
+    own_bounds,
+    settle_beyond,
+    size_of,
+)
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import change_if_too_coarse, refit
 from pzt_ident.diagnosis.spectral_line import is_own_line
@@ -51,17 +59,17 @@ def unproven(
     at the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE
     beside the others; of several that leave more than that each must remove more in proportion, and none is proven
     where that is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect
-    takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error of
-    one period in a stroke: it stands for what it is like there, unless the model is adequate with it. Even then
-    none may be in a limit that is declared to be something else, or a low harmonic of the drive, or of another size in
-    each record where it is the device's. Beside an effect that leaves its trace where its form is another one each must
-    remove SINGLE, as if it were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of
-    its band is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are
-    gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
-    beside which the others are judged: without it what they take up is nothing; of those that remove little beside what
-    is in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
-    lacks. What is flexible is proven only where the model is adequate with it, or if it removes SINGLE. None
-    is proven by a model that is simulated too coarsely with it.
+    takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error of one
+    period in a stroke: it stands for what it is like there, unless the model is adequate with it. Even then none may be
+    in a limit that is declared to be something else, or a low harmonic of the drive, or of another size in each record
+    where it is the device's; nor a line of few periods in the stroke unless the model is adequate. Beside an effect
+    that leaves its trace where its form is another one each must remove SINGLE, as if it were alone: a gain by the
+    swing beside a memory. A line of the spectrum that takes up all of its band is proven whatever is left elsewhere.
+    Nor may one take the place of the model's operator, whose loops are gone beside it, unless the model is adequate.
+    What takes up enough and only may be something else is a suspect beside which the others are judged: without it what
+    they take up is nothing; of those that remove little beside what is in a limit none is proven. What is proven on one
+    of several axes, and clear there, is proven, whatever another lacks. What is flexible is proven only where the model
+    is adequate with it, or if it removes SINGLE. None is proven by a model that is simulated too coarsely with it.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
     if coarse := simulated_too_coarsely(case, first, now, known):
@@ -209,10 +217,12 @@ def suspect(
     without = min(fits, key=lambda fit: fit.total)
     others, on_bounds = strangers(effect, rivals), own_bounds(now, effect)
     on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
-    limit = limit_of(now, on_bounds) or harmonic_of(now, effect) or size_of(now, effect)
-    is_line = not limit and is_own_line(case, without, now, effect)
     view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
-    displaced = "" if adequate(view, given, after) else displaced_operator(case, first, now, effect)
+    settled = adequate(view, given, after)
+    limit = limit_of(now, on_bounds) or harmonic_of(now, effect) or size_of(now, effect)
+    limit = limit or ("" if settled else curve_of(now, effect))
+    is_line = not limit and is_own_line(case, without, now, effect)
+    displaced = "" if settled else displaced_operator(case, first, now, effect)
     validate = of_all = None
     if after.validate is not None and before.validate is not None:
         validate = share_explained(before.validate, after.validate, view.floor)
@@ -222,7 +232,7 @@ def suspect(
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
     found = Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
-    bent = is_flexible(effect) and not adequate(view, given, after)
+    bent = is_flexible(effect) and not settled
     little = (bent or is_trace(effect, others_only)) and found.share < SINGLE
     return replace(found, beyond_form=False) if little else found
 

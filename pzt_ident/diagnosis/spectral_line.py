@@ -26,6 +26,7 @@ OWN = 0.9  # of the misfit of its band: what a line takes up that is one
 LOUD = 10.0  # times the noise in its band: a line that is told from it
 FEWEST = 3  # periods of a line in a record that shows it
 COUNTS = 3.5  # of the sensor in a period of a line over the displacement, which may be that of the counts
+FEW_PERIODS = 2.5  # in a stroke: as many has what a curve of the reading leaves of a fit
 LOWEST = 8  # harmonics of a drive up to this one are those that a stage makes
 
 
@@ -120,6 +121,17 @@ def is_of_the_counts(fit: Fit, effect: str) -> bool:
         return common_step([record.response[measured[row]] for record in fit.problem.records])
 
     return any(1 / line.wave < COUNTS * count(line.row) for line in lines)
+
+
+def has_few_periods(fit: Fit, effect: str) -> bool:
+    """Whether a line over the displacement has few periods in the largest stroke of each axis."""
+    lines = [line for line in lines_of(fit, effect) if not line.over_time]
+    measured = fit.problem.model.measured
+
+    def stroke(row: int) -> float:
+        return max(float(np.ptp(record.response[measured[row]])) for record in fit.problem.records)
+
+    return bool(lines) and all(line.wave * stroke(line.row) < FEW_PERIODS for line in lines)
 
 
 def order_of(record: Record, frequency: float) -> int:

@@ -12,7 +12,9 @@ class Solid:
     viscosity = Parameter("Pa*s", (1e2, 1e10), "Damping inside the material, C (Kelvin-Voigt).", scale="log")
     length = Parameter("m", (1e-3, 1), "Length from the fixed to the free end.", scale="log")
     end_mass = Parameter("kg", (0, 10), "Mass at the end.", value=0)
-    load = Parameter("kg", (0, 10), "Mass of a payload, added to that at the end.", null=0, effect="load_mass")
+    load = Parameter(
+        "kg", (0, 10), "Mass of a payload, added to that at the end.", null=0, effect="load_mass", adds_to="end_mass"
+    )
 
 
 def modes_resolved(elements, modes, per_mode, word):

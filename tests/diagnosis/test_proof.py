@@ -59,18 +59,20 @@ def suspects_of(monkeypatch):
         flexible=(),
         alone=None,
         coarse=(),
+        curves=(),
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
         instead: those that take the place of the operator. lines: those of the spectrum. harmonics: those of the drive.
         traces: those that others leave. many: those with many amounts. flexible: those that follow anything. alone:
         shapes as of `fit` where no other effect is left. coarse: those with which the simulation is too coarse.
-        declared: of the parameters with shapes."""
+        curves: lines of few periods in the stroke. declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
         monkeypatch.setattr(proof, "harmonic_of", lambda now, effect: "the drive's" if effect in harmonics else "")
         monkeypatch.setattr(proof, "size_of", lambda now, effect: "")
+        monkeypatch.setattr(proof, "curve_of", lambda now, effect: "a curve" if effect in curves else "")
         monkeypatch.setattr(proof, "is_trace", lambda effect, others: effect in traces and bool(others))
         monkeypatch.setattr(proof, "is_of_many", many.__contains__)
         monkeypatch.setattr(proof, "change_if_too_coarse", lambda case, fit: float(bool({*fit.effects} & {*coarse})))
@@ -393,6 +395,12 @@ def test_a_line_of_the_spectrum_is_proven_beside_any_rest(taken_out):
 def test_a_harmonic_of_the_drive_is_none_even_where_the_model_is_adequate(taken_out):
     assert taken_out(of(none=30, a=1.0)) == []
     assert taken_out(of(none=30, a=1.0), harmonics=["a"]) == ["a"]
+
+
+@pytest.mark.parametrize(("left", "suspects"), [(1.0, []), (2.0, ["a"])])
+def test_a_line_of_few_periods_in_the_stroke_is_one_only_where_the_model_is_adequate(taken_out, left, suspects):
+    assert taken_out(of(none=30, a=left)) == []
+    assert taken_out(of(none=30, a=left), curves=["a"], lines=["a"]) == suspects
 
 
 @pytest.mark.parametrize(("alone", "suspects"), [(4.0, ["b", "a"]), (20.0, ["a"])])

@@ -7,7 +7,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.limit import harmonic_of, is_limited
+from pzt_ident.diagnosis.limit import curve_of, harmonic_of, is_limited
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.spectral_line import is_own_line, order_of, power_near, stands_alone
 from pzt_ident.diagnosis.staircase import improve
@@ -142,6 +142,16 @@ def test_a_cyclic_error_of_few_counts_may_be_theirs(counts, limited):
     grating = {f"{GRATING}.sine": 0.01, f"{GRATING}.cosine": 0.0, f"{GRATING}.pitch": counts * step * 1e6}
     fit = fit_at((GRATING,), problem, problem.unit_point(first.values | grating))
     assert bool(harmonic_of(fit, GRATING)) == limited
+
+
+@pytest.mark.parametrize(("periods", "few"), [(2.3, True), (2.7, False)])
+def test_a_cyclic_error_of_few_periods_is_a_curve(periods, few):
+    case = stage.case({})
+    first, problem = first_fit(case, 0), case.problem((GRATING,))
+    stroke = max(np.ptp(record.response) for record in case.records) * 1e6
+    grating = {f"{GRATING}.sine": 0.01, f"{GRATING}.cosine": 0.0, f"{GRATING}.pitch": stroke / periods}
+    fit = fit_at((GRATING,), problem, problem.unit_point(first.values | grating))
+    assert bool(curve_of(fit, GRATING)) == few
 
 
 def test_a_drive_that_does_not_repeat_has_no_harmonics():
