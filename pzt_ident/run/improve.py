@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.thinning import diagnosed
 from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.errors import RunError
 from pzt_ident.files import write_sealed, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
@@ -122,11 +123,13 @@ def write_diagnosis(folder: Path, job: Job, case: Case, diagnosis: dict[str, Any
 
 
 def fitted(case: Case, job: Job, start: Path | None) -> Fit:
-    """The fit of the job's model, the best of random points and of the fit in a place that is given."""
-    if start is None:
-        return first_fit(case, job.seed)
-    known = start_point(case.problem(case.effects), read_start(start, job))
-    return first_fit(case, job.seed, known)
+    """The fit of the job's model, the best of random points and of the fit in a place that is given. Raises RunError
+    where it can be simulated at none of them."""
+    known = None if start is None else start_point(case.problem(case.effects), read_start(start, job))
+    fit = first_fit(case, job.seed, known)
+    if not np.isfinite(fit.identify):
+        raise RunError("the simulation of the model failed from each of its starts: narrow the bounds")
+    return fit
 
 
 def improve(

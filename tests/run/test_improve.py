@@ -291,7 +291,7 @@ def test_the_improved_job_is_the_model_that_was_told_of(coupled, tmp_path, monke
         climbed = [stairs.Step(first), stairs.Step(end, "amplifier_lag")]
         return stairs.Staircase(climbed, Diagnosis("adequate", "Said.", end, [], []))
 
-    def as_given(case, seed):
+    def as_given(case, seed, known):
         problem = case.problem(case.effects)
         return fit_at(case.effects, problem, np.full(problem.dimensions, 0.5))
 
@@ -391,6 +391,17 @@ def test_a_budget_that_is_too_small_says_what_was_not_tried(bent, tmp_path):
     content = read(tmp_path / "out" / "improvement.json")
     assert content["effects"] == []
     assert "The budget of 1e-06 s did not suffice for " in content["reason"] and "more effects" in content["reason"]
+
+
+@pytest.mark.parametrize("command", ["improve", "diagnose"])
+def test_a_model_that_cannot_be_simulated_is_not_diagnosed(bent, tmp_path, command):
+    path = bent.with_name("overflowing.yaml")
+    bounds = "parameters: {bouc_wen.beta: {bounds: [-400, -300]}, bouc_wen.gamma: {bounds: [-1, 1]}}\n"
+    path.write_text(stage.JOB + bounds, encoding="utf-8")
+    answer = call(command, path, "--out", tmp_path / "out")
+    assert answer.exit_code == 1
+    assert answer.stderr == "Error: the simulation of the model failed from each of its starts: narrow the bounds\n"
+    assert not [*(tmp_path / "out").glob("*nosis.json")]
 
 
 @pytest.mark.parametrize("budget", ["0s", "soon", "5 V", "-3s", "3 xyz"])
