@@ -67,7 +67,7 @@ class Record:
         run_in: int = 0,
         rest_at: float | str | Mapping[str, float | str] | None = None,
         denoise_drive: bool = False,
-        smooth_drive: bool = False,
+        smooth_drive: bool | None = None,
         steps: int = 1,
     ) -> None:
         if not isinstance(name, str):

@@ -170,7 +170,7 @@ def _named(each: Sequence[Record], word: str, taken: set[str]) -> Iterator[Recor
 def _record(record: Record, use: str, stamps: bool) -> dict[str, Any]:
     facts: dict[str, Any] = {"file": file_of(record), "use": use, "name": record.name}
     facts |= {} if stamps else {"sample_rate": record.rate}
-    usual = {"settle": 0.0, "run_in": 0, "rest_at": {}, "denoise_drive": False, "smooth_drive": False, "steps": 1}
+    usual = {"settle": 0.0, "run_in": 0, "rest_at": {}, "denoise_drive": False, "smooth_drive": None, "steps": 1}
     return facts | {key: getattr(record, key) for key, value in usual.items() if getattr(record, key) != value}
 
 

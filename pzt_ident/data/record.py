@@ -64,11 +64,12 @@ class Source:
     rest_at: the drive at which the stage rested until one sample before the first, from where it goes there on a line,
     of all axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is
     left out; it turns where that goes back by more. smooth_drive: whether the drive is smooth between its samples, as
-    behind a filter against aliasing, and not linear: with `run_in` it is the Fourier series of the record, else a cubic
-    spline; steps of 2 and more feel it. steps: simulation steps in a sample. dataset: below which one of a file with
-    several its channels are. table: which one of a text export with several. index: which part of an array. sheet:
-    which one of a workbook. channels: what is elsewhere in this record, by `time`, `drive`, `response` or, of one axis,
-    `x.drive`: `{response: {file: y.npy}}` takes every response from another file.
+    behind a filter against aliasing, and not linear, as it is unless the model takes it as smooth by itself: with
+    `run_in` it is the Fourier series of the record, else a cubic spline; steps of 2 and more feel it. steps: simulation
+    steps in a sample. dataset: below which one of a file with several its channels are. table: which one of a text
+    export with several. index: which part of an array. sheet: which one of a workbook. channels: what is elsewhere in
+    this record, by `time`, `drive`, `response` or, of one axis, `x.drive`: `{response: {file: y.npy}}` takes every
+    response from another file.
     """
 
     file: str
@@ -82,7 +83,7 @@ class Source:
     run_in: int = 0
     rest_at: Mapping[str, Level] | None = None
     denoise_drive: bool = False
-    smooth_drive: bool = False
+    smooth_drive: bool | None = None
     steps: int = 1
     dataset: str | None = None
     table: int | str | None = None
@@ -101,7 +102,7 @@ class Record:
     rest_at: the drive of each axis at which the stage rested until one sample before the first; None where that is the
     drive of the first sample. Empty where it is on all axes.
     denoise_drive: whether the drives are without the noise that was recorded. smooth_drive: whether they are smooth
-    between their samples.
+    between their samples; None where the model says.
     steps: simulation steps per sample.
     sha256: of the file as read. rows: the first row of the file that the record holds, and the first after it.
     judges: whether a model is judged by it; a record kept back may show what the others leave open.
@@ -117,7 +118,7 @@ class Record:
     run_in: int = 0
     rest_at: tuple[float | None, ...] = ()
     denoise_drive: bool = False
-    smooth_drive: bool = False
+    smooth_drive: bool | None = None
     steps: int = 1
     file: str = ""
     sha256: str = ""

@@ -56,7 +56,9 @@ class Case:
         self.wider: dict[Any, tuple[Case, Fit]] = {}  # fits gone on with beyond bounds, by slip, effects and point
         self.unlike: dict[Any, tuple[Case, Fit] | None] = {}  # with axes of their own mechanics, by effects and point
         self.scorers: list[Any] = []  # of the fits that were diagnosed last
-        self.smooth: Case | None = None  # with drives that are smooth between their samples, once that was asked for
+        self.reshaped: Case | None = (
+            None  # with drives that go otherwise between their samples, once that was asked for
+        )
         self.records, self.specs, self.error_scales = tuple(records), specs, error_scales(list(records))
 
     def with_specs(self, specs: Mapping[str, ParameterSpec]) -> Case:

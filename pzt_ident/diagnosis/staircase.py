@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
-from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, has_smooth, smooth_behind, with_smooth_drives
+from pzt_ident.diagnosis.drive_shape import better_as_usual, has_other, other_behind, way_of, with_other_drives
 from pzt_ident.diagnosis.faults import fault_instead
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
@@ -40,15 +40,15 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     judge it."""
     if quiet := with_quiet_drives(case, first):
         return improve_otherwise(case, first, *quiet, QUIET, on_step)
-    if smooth := with_smooth_drives(case, first):
-        staircase = improve_otherwise(case, first, *smooth, SMOOTH, on_step)
-        if staircase.case is None or not better_on_lines(case.with_words(staircase.case.words), staircase.end):
+    if other := with_other_drives(case, first):
+        staircase = improve_otherwise(case, first, *other, way_of(case), on_step)
+        if staircase.case is None or not better_as_usual(case.with_words(staircase.case.words), staircase.end):
             return staircase
-        return best_path(case, [staircase, improve_on_lines(case, first, on_step)])
-    return improve_on_lines(case, first, on_step)
+        return best_path(case, [staircase, improve_as_usual(case, first, on_step)])
+    return improve_as_usual(case, first, on_step)
 
 
-def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase:
+def improve_as_usual(case: Case, first: Fit, on_step: StepListener) -> Staircase:
     """The same, with drives as they are unless the model with the best effect says otherwise."""
     good = adequate(case, first, first)
     wide = not good and needs_wider_bounds(case, first)
@@ -57,12 +57,12 @@ def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase
             on_step(step)
         return mended
     case.budget.begin_path()
-    behind = None if good or wide or not has_smooth(case) else smooth_behind(case, first, likeliest(case, first))
+    behind = None if good or wide or not has_other(case) else other_behind(case, first, likeliest(case, first))
     diagnosis = None if good or wide or behind else diagnose(case, first)
     if diagnosis and diagnosis.best:
-        behind = smooth_behind(case, first, diagnosis.best.fit)
+        behind = other_behind(case, first, diagnosis.best.fit)
     if behind:
-        return improve_otherwise(case, first, *behind, SMOOTH, on_step)
+        return improve_otherwise(case, first, *behind, way_of(case), on_step)
     told = with_history(case, first, diagnosis) if diagnosis else None
     aged = improve_aged(case, first, *told, on_step) if told else None
     aged = None if aged and aged.last.verdict == "refused" else aged

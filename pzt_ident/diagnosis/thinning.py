@@ -15,7 +15,7 @@ from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.drive_noise import quieted
-from pzt_ident.diagnosis.drive_shape import smoothed
+from pzt_ident.diagnosis.drive_shape import reshaped
 from pzt_ident.diagnosis.faults import with_faults, without_outdone
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.judges import judged
@@ -168,11 +168,11 @@ def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | 
     where it is not adequate on both alike, or where other effects are proven there than on fewer."""
     if staircase.last.verdict == "refused":
         return None
-    homes = {id(None): case}
+    homes, as_given = {id(None): case}, [record.smooth_drive for record in case.records]
     for few in [staircase.case, *(step.case for step in staircase.steps)]:
         if few is not None and id(few) not in homes:
             whole = quieted(case) if any(record.denoise_drive for record in few.records) else case
-            whole = smoothed(whole) if any(record.smooth_drive for record in few.records) else whole
+            whole = reshaped(whole) if [record.smooth_drive for record in few.records] != as_given else whole
             homes[id(few)] = whole.with_words(few.words).with_specs(few.specs)
     home, steps = case, list[stairs.Step]()
     for step in staircase.steps:

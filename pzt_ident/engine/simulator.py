@@ -290,7 +290,8 @@ class Simulator:
         return table
 
     def _fine(self, drive: Array) -> Array:
-        smooth = self.record.smooth_drive or self.model.oversample > 1
+        given = self.record.smooth_drive
+        smooth = self.model.oversample > 1 if given is None else given
         return interpolated(drive, self.substeps, bool(self.record.run_in), smooth)
 
 

@@ -91,7 +91,7 @@ def edited(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     sections: Mapping[str, Any] | None = None,
-    switched: Mapping[str, Sequence[bool]] | None = None,
+    switched: Mapping[str, Sequence[bool | None]] | None = None,
 ) -> str:
     """The job's text with these effects, and with paths relative to another folder.
 
@@ -129,14 +129,14 @@ def edited(
     return text.getvalue()
 
 
-def _set_records(document: Any, job: Job, steps: Sequence[int], switched: Mapping[str, Sequence[bool]]) -> None:
+def _set_records(document: Any, job: Job, steps: Sequence[int], switched: Mapping[str, Sequence[bool | None]]) -> None:
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
     for word, each in switched.items():
         for record, source, on in zip(document["records"], job.records, each, strict=False):
-            if on and not getattr(source, word):
-                record[word] = True
+            if on is not None and on != getattr(source, word):
+                record[word] = on
 
 
 def _set_effects(document: Any, effects: Sequence[str]) -> None:
