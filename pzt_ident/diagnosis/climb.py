@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pzt_ident.diagnosis.behind import exchange_behind
-from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, stands_in
+from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
@@ -27,6 +27,7 @@ from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.unmeasured import OWN, freed_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, pair_behind
+from pzt_ident.diagnosis.within_bounds import are_to_blame
 from pzt_ident.model.registry import blocks, word_of
 
 MOST_STEPS = 8
@@ -134,7 +135,7 @@ def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
     if beyond is None:
         return None
     wide, after = beyond
-    if stands_in(wide, case, after) or not are_too_narrow(case, wide, fit, after):
+    if stands_in(wide, case, after) or not are_to_blame(case, wide, fit, after):
         return None
     return Step(after, explained=explained_share(case, fit, after), change=WIDER, case=wide)
 

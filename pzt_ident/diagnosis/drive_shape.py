@@ -21,7 +21,7 @@ SMOOTH = "drives smooth between their samples"  # the step after which they are
 LINEAR = "drives on lines between their samples"  # the same where the model takes them as smooth by itself
 PROBE = "delay"  # the effect that feels it most
 PROMISING = 0.02  # of the misfit of the model as given, or of that with a delay
-UNLIKE = 0.02  # of its deviation, or what is as much as the noise of the response, by which a drive is off the lines
+UNLIKE = 0.02  # of its deviation, by which a drive midway between its samples is off the line
 
 
 def with_other_drives(case: Case, first: Fit) -> tuple[Case, Fit] | None:
@@ -36,9 +36,11 @@ def other_behind(case: Case, first: Fit, best: Fit | None) -> tuple[Case, Fit] |
 
 
 def other_beside(case: Case, first: Fit, fit: Fit, least: float) -> tuple[Case, Fit] | None:
-    """The same where such drives remove that share of what a fit leaves, or one with a delay beside it."""
+    """The same where such drives remove that share of what a fit leaves, or one with a delay beside it; where they are
+    hardly off the lines, only if they lead to the noise: of what anything else leaves, they may take up a part."""
     if adequate(case, first, fit) or (other := reshaped(case)) is case:
         return None
+    unlike = any(is_off_lines(record, UNLIKE) for record in case.records)
     probed = [(PROBE,)] if PROBE in applicable(case, fit.effects) else []
     for more in ((), *probed):
         if not case.budget.allows(SMOOTH):
@@ -46,7 +48,8 @@ def other_beside(case: Case, first: Fit, fit: Fit, least: float) -> tuple[Case, 
         usual, after = (refit(home, fit, (*fit.effects, *more), half_a_sample(case)) for home in (case, other))
         clear = removed_rms(usual.total, after.total) > CLEAR * case.floor
         share = share_explained(usual.total, after.total, case.floor)
-        if clear and share >= least and not (after.by_use > usual.by_use).any():
+        enough = share >= least and (unlike or adequate(case, first, after))
+        if clear and enough and not (after.by_use > usual.by_use).any():
             return other, refit(other, first, first.effects, {})
     return None
 
@@ -77,7 +80,8 @@ def half_a_sample(case: Case) -> dict[str, float]:
 
 
 def reshaped(case: Case) -> Case:
-    """The case with drives that go otherwise between their samples; the same where that is hardly felt."""
+    """The case with drives that go otherwise between their samples; the same where they are off the lines by less than
+    UNLIKE, and by less than the noise could tell."""
     if case.reshaped is None:
         smooth, least = not takes_smooth(case), min(UNLIKE, case.floor / stroke(case.problem(case.effects)))
         records = [with_drive(record, smooth, least) for record in case.records]
@@ -94,11 +98,14 @@ def takes_smooth(case: Case) -> bool:
 def with_drive(record: Record, smooth: bool, least: float) -> Record:
     """The record with drives that are smooth, or on lines; the same where the job says how they are, or where they are
     off the lines by less than a share of their deviation."""
-    if record.smooth_drive is not None or not any(
-        off_lines(record, drive) > least * np.std(drive) for drive in record.drive
-    ):
+    if record.smooth_drive is not None or not is_off_lines(record, least):
         return record
     return replace(record, smooth_drive=smooth)
+
+
+def is_off_lines(record: Record, least: float) -> bool:
+    """Whether a drive that is smooth is off the lines by more than a share of its deviation."""
+    return any(off_lines(record, drive) > least * np.std(drive) for drive in record.drive)
 
 
 def off_lines(record: Record, drive: np.ndarray) -> float:

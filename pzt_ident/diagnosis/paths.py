@@ -32,6 +32,7 @@ from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explai
 from pzt_ident.diagnosis.suspect import Suspect
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
+from pzt_ident.diagnosis.within_bounds import makes_up_for_known
 from pzt_ident.model.registry import word_of
 
 PATHS = 2  # of a model, which differ by the effect that is added first
@@ -141,7 +142,7 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     for effect in reversed(added):
         for wide, beyond in without_in_wider_bounds(case, now, effect):
             as_low = removed_rms(beyond.total, now.total) < TIE * case.floor
-            if as_low and not stands_in(wide, case, beyond):
+            if as_low and not stands_in(wide, case, beyond) and not makes_up_for_known(case, beyond, effect):
                 both = continued(wide, now)
                 return [
                     Step(both, explained=explained_share(case, now, both), change=WIDER, case=wide),

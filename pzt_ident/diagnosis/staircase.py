@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from pzt_ident.diagnosis.accounts import accounts, explains_fitted, keeps_within, outdoes
-from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, continued, widened
+from pzt_ident.diagnosis.bounds import beyond_bounds, continued, widened
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import likeliest
 from pzt_ident.diagnosis.case import Case
@@ -30,6 +30,7 @@ from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import enough_without_mechanics
 from pzt_ident.diagnosis.unlike import own_account, own_at_once
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
+from pzt_ident.diagnosis.within_bounds import are_to_blame
 from pzt_ident.model.registry import word_of
 
 BESIDE = 4  # of the refits with one effect: those that are gone on with beyond the bounds of the job
@@ -106,7 +107,7 @@ def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircas
 def needs_wider_bounds(case: Case, first: Fit) -> bool:
     """Whether bounds are too narrow for the model as given."""
     beyond = beyond_bounds(case, first, first)
-    return bool(beyond and are_too_narrow(case, beyond[0], first, beyond[1]))
+    return bool(beyond and are_to_blame(case, beyond[0], first, beyond[1]))
 
 
 def improve_aged(case: Case, first: Fit, aged: Case, start: Fit, on_step: StepListener) -> Staircase:
@@ -138,7 +139,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         return improve_within(enough[1], steps_without(case, first, *enough), on_step)
     beyond = None if good else beyond_bounds(case, first, first)
     wide = None
-    if beyond and are_too_narrow(case, beyond[0], first, beyond[1]):
+    if beyond and are_to_blame(case, beyond[0], first, beyond[1]):
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case, first):
             return wide

@@ -24,7 +24,7 @@ from pzt_ident.diagnosis.refining import refined_operator
 from pzt_ident.diagnosis.ties import TWIN
 from pzt_ident.diagnosis.unmeasured import own_mechanics_sentence
 from pzt_ident.diagnosis.verdict import Diagnosis
-from pzt_ident.diagnosis.within_bounds import within_bounds_sentence
+from pzt_ident.diagnosis.within_bounds import beyond_known_sentence, within_bounds_sentence
 from pzt_ident.job.schema import Job
 from pzt_ident.model.description import headline
 from pzt_ident.model.registry import blocks, form_of, phrase_of, word_of
@@ -52,7 +52,8 @@ def improvement_of(
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += no_drive_sentence(job, case, [step.rivals for step in ties(steps)]) if undecided and not proposed else ""
     reason += narrow_bounds_sentence(case, end)
-    reason += within_bounds_sentence(case, end) if last["verdict"] != "unfinished" else ""
+    if last["verdict"] != "unfinished":
+        reason += within_bounds_sentence(case, end) + beyond_known_sentence(case, end)
     reason += own_mechanics_sentence(case, end) + history_sentence(case, end)
     reason += caveats(case, end, reason)  # the last diagnosis may be of this fit
     return {

@@ -5,8 +5,10 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.bounds import Widened, beyond_bounds, beyond_names
+from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.within_bounds import adding_effects, within_bounds_sentence
+from pzt_ident.diagnosis.within_bounds import adding_effects, beyond_known_sentence, within_bounds_sentence
+from pzt_ident.model.registry import blocks
 
 RINGING = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
 MADE = {"model": ("bouc_wen", "lumped"), "drives": [RINGING, 0.8 * RINGING], "dt": 2e-5, "steps": 1}
@@ -33,6 +35,18 @@ def test_a_payload_and_a_stiffness_below_its_bound_are_told_as_one(load):
     assert within_bounds_sentence(case, end).startswith(" With load_mass the model fits as well within the bounds")
     case.ruled_out = ("load_mass",)
     assert "load_mass" not in within_bounds_sentence(case, end)
+
+
+@pytest.mark.parametrize(("low", "named"), [(0.998, ["load_mass"]), (0.97, [])])
+def test_a_payload_is_named_where_the_stiffness_is_known_and_the_bound_where_it_has_a_range(low, named):
+    """A resonance 4 % too low, of a stiffness that the job has within 0.4 %, or above a bound that is 1 % too high."""
+    case = weighed({"lumped.load": 0.006}, low, 1.002 if named else 1.12)
+    case.ruled_out = tuple({*blocks.effects()} - {"load_mass", "viscous_damping", "delay"})
+    found = improve(case, first_fit(case, 0))
+    assert [*found.end.effects] == named
+    said = beyond_known_sentence(case, found.end)
+    assert said.startswith(" Without load_mass it fits as well with lumped.stiffness = ") == bool(named)
+    assert bool(beyond_names(case, found.end)) == (not named)
 
 
 def test_a_stiffness_above_its_bound_is_no_payload():

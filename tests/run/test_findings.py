@@ -22,7 +22,7 @@ from pzt_ident.run.statement import Statement
 def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeypatch):
     silent = {"stair": {}, "caveats": "", "narrow_bounds_sentence": "", "units_and_floors": {}, "limits_of": "10 V"}
     silent |= {"own_mechanics_sentence": "", "history_sentence": "", "refined_operator": ""}
-    silent["within_bounds_sentence"] = ""
+    silent |= dict.fromkeys(("within_bounds_sentence", "beyond_known_sentence"), "")
     for name, nothing in silent.items():
         monkeypatch.setattr(findings, name, lambda *arguments, nothing=nothing: nothing)
     before, after = (
