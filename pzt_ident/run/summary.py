@@ -23,6 +23,7 @@ from pzt_ident.search.problem import Problem
 Facts = dict[str, Any]
 
 MOVED = 2e-3  # of the range of a drive that moves
+ASIDE, SWIFT = 0.05, 0.2  # of the range, from zero and from its ends, and of most moves: a drive that is under way
 
 
 def summary_of(job: Job) -> Facts:
@@ -46,7 +47,7 @@ def summary_of(job: Job) -> Facts:
             *_weak_floors(axes),
             *_unmeasured(axes),
             *_all_fitted(records),
-            *_cut_in_motion(job, records, problem),
+            *_in_motion(job, records, problem),
         ],
         "nameable": applicable(case, case.effects),
         "faults": applicable(case, case.effects, in_setup=True),
@@ -136,16 +137,30 @@ def _all_fitted(records: list[Record]) -> Iterator[str]:
         yield "all records are fitted: keep one back by `use: validate` to see what the model predicts of it"
 
 
-def _cut_in_motion(job: Job, records: list[Record], problem: Problem) -> Iterator[str]:
-    """A sentence on each record that is cut out of its file where a drive moves, if nothing says what was before."""
-    told = any(block.lead for block in problem.model.blocks)
-    for source, record in zip(job.records, records, strict=True):
-        first = (source.rows or source.time or (0,))[0]
-        if first and not (told or record.run_in or record.rest_at) and _moves_at_once(record):
-            yield (
-                f"{record.name} is cut out of its file where the drive moves, and the model starts from rest there: "
-                "`history` in `model` follows what was before"
-            )
+def _in_motion(job: Job, records: list[Record], problem: Problem) -> Iterator[str]:
+    """A sentence on the records that are cut out of their files where the drive moves, and on those that begin in the
+    middle of a motion, if nothing says what was before."""
+    if any(block.lead for block in problem.model.blocks):
+        return
+    both = zip(job.records, records, strict=True)
+    open_ones = [(source, record) for source, record in both if not (record.run_in or record.rest_at)]
+    cut = [r.name for source, r in open_ones if (source.rows or source.time or (0,))[0] and _moves_at_once(r)]
+    begun = [record.name for _, record in open_ones if record.name not in cut and _is_under_way(record)]
+    follows = "`history` in `model` follows what was before"
+    for names, what in ((cut, "cut out where the drive moves"), (begun, "under way from the first sample on")):
+        if names:
+            are = "is" if len(names) == 1 else "are"
+            yield f"{listed(names)} {are} {what}, and the model starts from rest there: {follows}"
+
+
+def _is_under_way(record: Record) -> bool:
+    """Whether a drive begins away from zero and from the ends of its range, as fast as it mostly moves."""
+    for drive in record.drive:
+        moves, span, first = np.abs(np.diff(drive)), np.ptp(drive), drive[0]
+        aside = min(abs(first), first - drive.min(), drive.max() - first) > ASIDE * span
+        if aside and moves[:3].max() > SWIFT * np.quantile(moves[moves > 0], 0.9):
+            return True
+    return False
 
 
 def _moves_at_once(record: Record) -> bool:

@@ -93,7 +93,26 @@ def test_a_record_that_is_cut_out_in_motion_is_told_unless_the_job_says_what_was
     made = stage.records({}, drives=[drive, drive], dt=1e-3)
     changes = ("identify.csv, use: identify", f"identify.csv, use: identify, {cut}"), ("[bouc_wen]", model)
     notes = notes_with(tmp_path, *changes, made=made)
-    assert ["is cut out of its file where the drive moves" in note for note in notes] == [True] * told
+    assert ["is cut out where the drive moves" in note for note in notes] == [True] * told
+
+
+@pytest.mark.parametrize(
+    ("phase", "cut", "told"),
+    [
+        (1.5, "", True),
+        (0.0, "", False),
+        (np.pi, "", False),
+        (1.5, ", run_in: 1", False),
+        (1.5, ", rest_at: 0 V", False),
+    ],
+)
+def test_a_record_that_begins_in_the_middle_of_a_motion_is_told_unless_the_job_says_what_was_before(
+    tmp_path, phase, cut, told
+):
+    drive = 60 - 60 * np.cos(phase + np.arange(1000) / 60)
+    made = stage.records({}, drives=[drive, 60 - 60 * np.cos(np.arange(1000) / 60)], dt=1e-3)
+    notes = notes_with(tmp_path, ("identify.csv, use: identify", f"identify.csv, use: identify{cut}"), made=made)
+    assert any("identify is under way from the first sample on" in note for note in notes) == told
 
 
 def test_what_a_diagnosis_cannot_name_is_told_with_the_reason(tmp_path):
