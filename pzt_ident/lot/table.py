@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Collection, Iterator, Sequence
 from hashlib import sha256
@@ -134,12 +135,29 @@ def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
             column = columns.setdefault(key, [])
             column += [None] * (count - 1 - len(column))
             column.append(sys.intern(value) if isinstance(value, str) else value)
-    keys = dict.fromkeys(key for kind in sorted(kinds, key=len, reverse=True) for key in kind)
+    keys = in_order(dict.fromkeys(key for kind in sorted(kinds, key=len, reverse=True) for key in kind))
     cells = {key: of_one_kind(columns[key] + [None] * (count - len(columns[key]))) for key in keys}
     return pd.DataFrame({heading: cells[key] for key, heading in _headings(list(keys)).items()})
 
 
+def in_order(keys: Collection[tuple[str, bool]]) -> list[tuple[str, bool]]:
+    """The columns as a device has them, those of effects that were added by name behind them, and the last ones last:
+    whatever devices there are, and in which order."""
+
+    def is_added(key: tuple[str, bool]) -> bool:
+        own = key[0].removeprefix(IMPROVED)
+        return not key[1] and own != key[0] and (own, False) not in keys
+
+    last = [key for key in keys if not key[1] and key[0] in LAST]
+    added = sorted((key for key in keys if is_added(key)), key=lambda key: END.sub(lambda end: ENDS[end[1]], key[0]))
+    return [*(key for key in keys if key not in last and key not in added), *added, *last]
+
+
 DEVICE = ("device", False)
+IMPROVED = "improved "
+LAST = "cpu [s]", "sha256", "folder", "reason"
+ENDS = {"": "0", " low": "1", " high": "2"}
+END = re.compile(r"( low| high|)(?= \[[^]]*\]$)")  # which of the three cells of a parameter
 
 
 def _headings(keys: Sequence[tuple[str, bool]]) -> dict[tuple[str, bool], str]:
