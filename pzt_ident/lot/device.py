@@ -197,7 +197,11 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
             name: interval(parameter) | {"verdict": parameter["verdict"]}
             for name, parameter in best["parameters"].items()
         },
-        "improved": {name: interval(parameter) for name, parameter in last["parameters"].items() if improvement},
+        "improved": {
+            name: interval(parameter) | {"verdict": parameter["verdict"]}
+            for name, parameter in last["parameters"].items()
+            if improvement
+        },
         "amounts": last.get("amounts", []),
         "files": {file: str(path) for file, path in given.files.items()},
         "sha256": given.sha256,
@@ -207,7 +211,8 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
 def interval(parameter: Mapping[str, Any]) -> dict[str, Any]:
     """A parameter with the ends of its interval of 95 %; none where the data do not determine it."""
     value, error = parameter["value"], parameter["standard_error"]
-    ends = (None, None) if error is None else (value - WITHIN_95 * error, value + WITHIN_95 * error)
+    near = (None, None) if error is None else (value - WITHIN_95 * error, value + WITHIN_95 * error)
+    ends = parameter.get("interval") or near
     return {"value": value, "unit": parameter["unit"], "low": ends[0], "high": ends[1]}
 
 

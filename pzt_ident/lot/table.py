@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Collection, Iterator, Sequence
 from hashlib import sha256
@@ -149,15 +148,20 @@ def in_order(keys: Collection[tuple[str, bool]]) -> list[tuple[str, bool]]:
         return not key[1] and own != key[0] and (own, False) not in keys
 
     last = [key for key in keys if not key[1] and key[0] in LAST]
-    added = sorted((key for key in keys if is_added(key)), key=lambda key: END.sub(lambda end: ENDS[end[1]], key[0]))
+    added = sorted((key for key in keys if is_added(key)), key=lambda key: _place(key[0]))
     return [*(key for key in keys if key not in last and key not in added), *added, *last]
 
 
 DEVICE = ("device", False)
 IMPROVED = "improved "
 LAST = "cpu [s]", "sha256", "folder", "reason"
-ENDS = {"": "0", " low": "1", " high": "2"}
-END = re.compile(r"( low| high|)(?= \[[^]]*\]$)")  # which of the three cells of a parameter
+CELLS = " low [", " high [", " verdict"  # of a parameter, behind that of its value
+
+
+def _place(heading: str) -> tuple[str, int]:
+    """The parameter of a cell, and which of its cells it is."""
+    number = next((number for number, cell in enumerate(CELLS, 1) if cell in heading), 0)
+    return heading.partition(CELLS[number - 1] if number else " [")[0], number
 
 
 def _headings(keys: Sequence[tuple[str, bool]]) -> dict[tuple[str, bool], str]:
@@ -200,7 +204,8 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
     for name, parameter in row["parameters"].items():
         line |= _interval(name, parameter, units) | {f"{name} verdict": parameter["verdict"]}
     for name, parameter in row.get("improved", {}).items():
-        line |= _interval(f"improved {name}", parameter, units)
+        line |= _interval(f"{IMPROVED}{name}", parameter, units)
+        line |= {f"{IMPROVED}{name} verdict": parameter.get("verdict")}
     for amount in row.get("amounts") or []:
         line |= _cell(f"improved {amount['axis']} {amount['effect']} rms", "", amount["rms"], amount["unit"], units)
     folder = folder_of(Path(), row["device"]).as_posix()

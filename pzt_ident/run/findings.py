@@ -137,11 +137,10 @@ def stair(case: Case, step: stairs.Step, budget: Budget | None = None) -> dict[s
 
 
 def parameters_of(fit: Fit, budget: Budget | None) -> dict[str, dict[str, Any]]:
-    """The free parameters of a fit with their units and standard errors, None where the data do not determine them."""
-    return {
-        estimate.name: {"value": estimate.value, "unit": estimate.unit, "standard_error": estimate.standard_error}
-        for estimate in fit.estimates(budget)
-    }
+    """The free parameters of a fit with their units, and whether the data determine them: standard errors and intervals
+    are None where they do not."""
+    keys = "value", "unit", "standard_error", "interval", "verdict"
+    return {estimate.name: {key: getattr(estimate, key) for key in keys} for estimate in fit.estimates(budget)}
 
 
 def refitted(case: Case, fit: Fit) -> dict[str, Any]:

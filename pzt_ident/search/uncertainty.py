@@ -23,6 +23,7 @@ EDGE, SURELY = 1e-4, 2.0  # of the search range, and standard errors: a paramete
 SAME = 1 + FLAT  # times the best RMSE: what runs with less reach is the same
 SCATTER = 0.01  # of the search range, by which such runs may put a parameter beyond its interval
 TIED = 0.995  # correlation above which two parameters are known only together
+EXTRAPOLATED = 5.0  # times the longest record: of a time constant beyond, records hold the beginning
 
 
 class Estimate(NamedTuple):
@@ -49,7 +50,8 @@ def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda
     alone miss what is correlated over their ends. Where the profile of the loss is
     flatter than its curvature says, the standard error is that of the interval which the profile gives. A parameter is
     not determined if its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more
-    than WIDE, of its search range. going: as of `intervals`.
+    than WIDE, of its search range, or if a time constant of its block is beyond the records (EXTRAPOLATED): what comes
+    to rest later is what the form of the effect says, and not what was measured. going: as of `intervals`.
     """
     problem = problem.narrowed(point)
     sandwich = Sandwich(lambda: problem.samples(point))
@@ -63,9 +65,11 @@ def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda
     flat = flat_share(problem, point)
     scale = np.where(error > 0, error, 1)
     correlation = np.nan_to_num(covariance / np.outer(scale, scale))
-    rows = []
+    rows, slow = [], slow_blocks(problem, value)
     for i, name in enumerate(problem.names):
         verdict, note = verdict_of(point[i], error[i], flat[i], ends_at_bound(problem, point, i))
+        if verdict == "determined" and name.rpartition(".")[0] in slow:
+            verdict, note = "not determined", slow[name.rpartition(".")[0]]
         interval = interval_of(problem, point, i, ends[i])
         standard_error = float(error[i] * abs(slope[i])) if verdict != "not determined" else None
         if verdict == "determined":
@@ -75,6 +79,18 @@ def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda
         facts = (problem.units[i], lower, upper, standard_error, scale_word, verdict, note, None)
         rows.append(Estimate(name, float(value[i]), *facts, interval if standard_error is not None else None))
     return rows + linear_estimates(problem, point), correlation
+
+
+def slow_blocks(problem: Problem, values: Array) -> dict[str, str]:
+    """Why the parameters of a block say what was not measured, by the block and its axis: a time constant is far beyond
+    the records that are fitted. values: of the free parameters, in the user's units."""
+    fitted = (record for record in problem.records if record.use == "identify")
+    longest, slow = max(record.samples * record.dt for record in fitted), dict[str, str]()
+    for name, value, unit in zip(problem.names, values.tolist(), problem.units, strict=True):
+        if unit == "s" and value > EXTRAPOLATED * longest:
+            owner = name.rpartition(".")[0]
+            slow[owner] = f"{name} is far beyond the longest record, of {longest:.3g} s: these hold its beginning only"
+    return slow
 
 
 def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[float, float]:

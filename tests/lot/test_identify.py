@@ -407,12 +407,12 @@ def test_each_device_is_diagnosed_where_that_is_asked(tmp_path):
         steps = read_sealed(out / row["folder"] / "improved" / "improvement.json")["steps"]
         for parameter, found in steps[-1]["parameters"].items():
             at = f"improved {parameter}{{}} [{found['unit']}]"
-            half, middle = found["standard_error"], row[at.format("")]
-            if half is None:
-                assert pd.isna(row[at.format(" low")]) and pd.isna(row[at.format(" high")])
+            ends, middle = [row[at.format(" low")], row[at.format(" high")]], row[at.format("")]
+            if found["interval"] is None:
+                assert pd.isna(ends).all()
             else:
-                assert row[at.format(" low")] == pytest.approx(middle - 1.96 * half, rel=1e-9, abs=1e-12)
-                assert row[at.format(" high")] == pytest.approx(middle + 1.96 * half, rel=1e-9, abs=1e-12)
+                assert ends == pytest.approx(found["interval"], rel=1e-9, abs=1e-12)
+            assert row[f"improved {parameter} verdict"] == found["verdict"]
             assert middle == pytest.approx(found["value"], rel=1e-9)
         known = {heading.split(" [")[0] for heading in row.dropna().index if heading.startswith("improved ")}
         assert {f"improved {parameter}" for parameter in steps[-1]["parameters"]} <= known

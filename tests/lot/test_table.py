@@ -60,7 +60,7 @@ def test_what_an_effect_adds_to_a_record_is_a_column():
 
 def improved(device, **values):
     """A device whose improved model has these parameters beside its own, each with an interval."""
-    own = {"value": 0.1, "low": 0.0, "high": 0.2, "unit": "um/V"}
+    own = {"value": 0.1, "low": 0.0, "high": 0.2, "unit": "um/V", "verdict": "determined"}
     return row_of(device) | {
         "rmse_improved": {"identify": 0.05},
         "improved": {"gain": own} | {name: own | {"value": value} for name, value in values.items()},
@@ -71,8 +71,9 @@ def test_columns_do_not_depend_on_which_devices_there_are_and_in_which_order():
     rows = [row_of("a"), improved("b", lag=1.0), improved("c", creep=2.0, lag=3.0), row_of("d", "broken")]
     columns = list(frame_of(iter(rows)).columns)
     assert all(list(frame_of(iter(some)).columns) == columns for some in permutations(rows))
-    names = [f"improved {name}{end} [um/V]" for name in ("creep", "lag") for end in ("", " low", " high")]
-    assert columns[-10:] == [*names, "cpu [s]", "sha256", "folder", "reason"]
+    cells = " [um/V]", " low [um/V]", " high [um/V]", " verdict"
+    names = [f"improved {name}{cell}" for name in ("creep", "lag") for cell in cells]
+    assert columns[-12:] == [*names, "cpu [s]", "sha256", "folder", "reason"]
     assert columns.index("improved gain [um/V]") < columns.index(names[0])
 
 

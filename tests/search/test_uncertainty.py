@@ -14,7 +14,7 @@ from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.sandwich import Lags, Sandwich, autoregression
 from pzt_ident.search.uncertainty import caution, ends_at_bound, estimates, interval_of, verdict_of
-from rig import record
+from rig import record, response
 
 BLOCKS, LENGTH = 40, 10
 ALTERNATING = np.repeat(np.resize([1.0, -1.0], BLOCKS), LENGTH)
@@ -112,6 +112,23 @@ def test_the_error_of_a_gain_is_that_of_the_slope_of_a_straight_line():
     assert gain.standard_error == pytest.approx(expected, rel=0.35)
     assert abs(gain.value - 1e-7) < 4 * expected
     assert gain.note == ""
+
+
+@pytest.mark.parametrize(("tau", "known"), [(3.0, True), (40.0, False)])
+def test_of_a_time_constant_far_beyond_the_records_nothing_of_its_effect_is_determined(tau, known):
+    """Creep of 5 % in records of 4 s: the beginning of a slow one has a slope, and no end."""
+    truth = {"bouc_wen.gain": 1e-7, "bouc_wen.alpha": 0.0, "bouc_wen.beta": 1.0, "bouc_wen.gamma": 0.0}
+    truth |= {"creep.ratio": 0.05, "creep.tau": tau, "creep.decades": 0.0}
+    drive = np.repeat([0.0, 60.0, 20.0, 90.0], 250)
+    moved = response(["bouc_wen", "creep"], truth, drive, dt=4e-3)
+    made = record(drive, response=[moved + np.random.default_rng(1).normal(0, 1e-10, drive.size)], dt=4e-3)
+    fixed = {name: FixedValue(value) for name, value in truth.items() if name.startswith("bouc_wen")}
+    chain = Chain([blocks["bouc_wen"], blocks["creep"]], ("x",), (0,))
+    problem = Problem(chain, [made], fixed | {"creep.decades": FixedValue(0.0)})
+    rows, _ = estimates(problem, problem.unit_point({"creep.ratio": 0.05, "creep.tau": tau}))
+    assert [row.verdict == "determined" for row in rows] == [known, known]
+    assert [row.interval is not None for row in rows] == [known, known]
+    assert ("creep.tau is far beyond the longest record, of 4 s" in rows[0].note) == (not known)
 
 
 @pytest.mark.parametrize(("bounds", "least"), [(None, 0.0), ((0.0, 1.0), 0.0), ((-1.0, 1.0), -np.inf)])
