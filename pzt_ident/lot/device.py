@@ -21,6 +21,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import digest_of, read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
 from pzt_ident.job.files import Template, on_files
 from pzt_ident.job.schema import Job
+from pzt_ident.lot.measured import measured
 from pzt_ident.model.registry import blocks
 from pzt_ident.run.collect import collect
 from pzt_ident.run.elsewhere import move
@@ -81,7 +82,7 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
         row = row_of(given, result, improvement) | {"readings": wrong_readings(records)}
-        row |= {"cpu_seconds": time.process_time() - start}
+        row |= {"measured": measured(records), "cpu_seconds": time.process_time() - start}
         write_sealed(folder / "device.json", row | {"written": written(folder)})
         return read_files(folder)
 

@@ -14,6 +14,7 @@ import numpy as np
 from pzt_ident.data.notation import counted
 from pzt_ident.errors import DamagedError, InputError
 from pzt_ident.lot.identify import read_statement
+from pzt_ident.lot.measured import unlike_others
 from pzt_ident.lot.statistics import (
     FEWEST,
     Difference,
@@ -149,6 +150,17 @@ class Lot:
         """What looks wrong with the readings of each device of which anything does."""
         return {row["device"]: told for row in self.done if (told := readings_in(row))}
 
+    @cached_property
+    def unlike(self) -> dict[str, list[str]]:
+        """How each device was measured that was measured unlike the others."""
+        return unlike_others({row["device"]: row.get("measured") or [] for row in self.done})
+
+    def of_units(self) -> list[str]:
+        """A sentence on each of the first devices that were measured unlike the others, and one on how many more."""
+        lines = [f"{device} was measured unlike the others: {'; '.join(told)}." for device, told in self.unlike.items()]
+        more = len(lines) - MOST_TOLD
+        return [*lines[:MOST_TOLD], *[f"So were {more} more: are the units right?"] * (more > 0)]
+
     def of_readings(self) -> list[str]:
         """A sentence on each of the first devices whose readings look wrong, and one on how many more there are."""
         lines = [f"The readings of {device} look wrong: {'; '.join(told)}." for device, told in self.misread.items()]
@@ -178,6 +190,7 @@ class Lot:
                 for word, remedy in faults_in(row).items()
             ],
             "readings": self.misread,
+            "unlike": self.unlike,
             "same_data": self.same_data,
             "out_of_line": [{"device": finding.device, "reason": finding.sentence} for finding in self.findings],
         }
@@ -196,7 +209,7 @@ class Lot:
             lines.append(f"Missing in {len(names)}: {effect} ({some(names)}).")
         for fault, names in self.faults.items():
             lines.append(f"Fault of the set-up in {len(names)} ({some(names)}): {fault}")
-        lines += self.of_readings()
+        lines += self.of_readings() + self.of_units()
         for reason, names in (
             ("The model fits worse than usual", self.ill_fitted),
             ("Parameters out of line", self.odd),

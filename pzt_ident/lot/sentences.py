@@ -71,7 +71,7 @@ def findings(lot: Lot) -> Iterator[str]:
         if difference.clear:
             quantity = next(quantity for quantity in lot.quantities if quantity.name == difference.quantity)
             yield f"{quantity.name} differs by {difference.column}: {groups_of(difference, unit(quantity.unit))}."
-    yield from map(spelled, lot.of_readings())
+    yield from map(spelled, [*lot.of_readings(), *lot.of_units()])
     for names in lot.same_data:
         yield f"{listed(names)} have the same data: is one of them a copy?"
     undetermined = [

@@ -1,11 +1,15 @@
 """What the diagnoses of single devices say is said of the lot, wherever it is told."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import stage
 from lot.test_table import row_of
 from pzt_ident.data.faults import fault_phrases
 from pzt_ident.lot.device import missing_of, wrong_readings
+from pzt_ident.lot.measured import measured
 from pzt_ident.lot.outcome import Lot
 from pzt_ident.lot.report import device_lines, header
 from pzt_ident.lot.sentences import far, findings
@@ -76,6 +80,25 @@ def test_readings_that_look_wrong_are_told_everywhere(lot):
         row |= {"readings": ["loops: odd"]}
     assert len(lot.of_readings()) == 6
     assert lot.of_readings()[-1] == "So do those of 15 more: see `readings` in the table."
+
+
+def test_a_device_that_was_measured_unlike_the_others_is_told(lot):
+    """Time in ms, and a response in nm under a heading of um: a thousandth of the rate, a thousand times the range."""
+    usual = stage.records({})
+    others = {
+        "d2": [replace(record, dt=1e3 * record.dt) for record in usual],
+        "d7": [replace(record, response=1e3 * record.response) for record in usual],
+        "d9": [replace(record, response=2 * record.response) for record in usual],
+    }
+    for row in lot.rows:
+        row |= {"measured": measured(others.get(row["device"], usual))}
+    assert [*lot.unlike] == ["d2", "d7"] and lot.summary()["unlike"] == lot.unlike
+    rate, time = lot.unlike["d2"]
+    assert rate.startswith("its sample rate is 0.2") and time.startswith("its time measured is ")
+    (response,) = lot.unlike["d7"]
+    assert response.startswith("its range of the response of x is ") and response.endswith(" is usual")
+    for said in (lot.sentences(), [*findings(lot)]):
+        assert any("d7 was measured unlike the others: its range of the response" in line for line in said)
 
 
 def test_a_device_is_told_what_check_tells_of_its_readings():

@@ -24,7 +24,14 @@ def made_lot(*, given=0, more=0, ill=0, odd=0, broken=0, waiting=0, **known):
     rest = [{"device": f"r{place}"} for place in range(broken + waiting)]
     names = [row["device"] for row in done]
     usual = {"verdicts": {}, "statement": {"improve": True}, "effects": {}, "trends": [], "quantities": []}
-    usual |= {"missing": {}, "faults": {}, "group_differences": [], "same_data": [], "of_readings": list}
+    usual |= {
+        "missing": {},
+        "faults": {},
+        "group_differences": [],
+        "same_data": [],
+        "of_readings": list,
+        "of_units": list,
+    }
     return SimpleNamespace(
         rows=[*done, *rest],
         done=done,
