@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.notation import counted
 from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
@@ -54,7 +55,9 @@ def size_of(model: Chain, entry: Entry, records: Sequence[Record]) -> float:
     if not named:
         return factor(entry.parameter.unit)
     if "drive" in named and spans["drive"] == 0:
-        message = f"the drive of axis {model.axes[entry.axis]} is constant: nothing to scale {entry.name} by"
+        samples = counted(sum(record.samples for record in records), "sample")
+        axis = model.axes[entry.axis]
+        message = f"the drive of axis {axis} is constant over all {samples}: nothing to scale {entry.name} by"
         remedy = "is it the right column? Otherwise give the parameter `bounds` or a `value`"
         raise InputError(message, where=records[0].file or records[0].name, remedy=remedy)
     size = 1.0

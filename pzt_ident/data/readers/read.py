@@ -147,7 +147,8 @@ def _moves(drive: Signal, part: slice) -> bool:
 
 def _check_not_constant(response: Signal) -> None:
     if np.ptp(response.values) == 0:
-        problem = f"the response is constant ({response.values[0] + 0.0:g} in SI units)"
+        value = response.values[0] / factor(response.unit) + 0.0
+        problem = f"the response is constant ({value:g} {response.unit} in all {response.values.size} samples)"
         raise InputError(problem, where=response.where, remedy="is it the right column, and was the sensor connected?")
 
 
