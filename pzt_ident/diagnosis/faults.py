@@ -25,7 +25,7 @@ from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import blocks, phrase_of
 
-LIKELY = 0.5  # of the misfit: a fault that scores less cannot be all that is missing, and is not fitted
+LIKELY = 0.3  # of the misfit: a fault that scores less is not all that is missing, and is not fitted
 BACK = "back to the model as given"  # the step that takes out what a fault of the set-up does better
 
 
