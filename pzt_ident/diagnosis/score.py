@@ -22,6 +22,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.possible import fitting_forms
 from pzt_ident.diagnosis.projection import Projection, Sets, Split
 from pzt_ident.diagnosis.trials import MOST_SHAPES, ShapesByAxis, Trial, parameter_grid, planned_trials, trials_beside
+from pzt_ident.model.block import Place
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.problem import Problem
 
@@ -62,6 +63,11 @@ class Score:
         return self.guesses[0] if self.guesses else {}
 
 
+def enters_drive(item: str) -> bool:
+    """Whether a form of an effect adds to the drive, ahead of all else."""
+    return getattr(blocks[item], "place", None) == Place.SUPPLY
+
+
 def scorer_of(case: Case, fit: Fit) -> Scorer:
     """The scorer of a fit; those of the last fits are kept: no effect is scored twice beside one of them."""
     scorer = next((item for item in case.scorers if item.fit is fit), None) or Scorer(case, fit)
@@ -89,12 +95,14 @@ class Scorer:
 
     def scores(self, effect: str, in_every_form: bool = True) -> list[Score]:
         """The scores of an effect, the first form first, and of its other forms; of what is costly only where the first
-        explains some, and near the shapes with which it does, and none that takes MOST_SIMULATIONS."""
+        explains some, and near the shapes with which it does, unless it enters the drive, whose hysteresis the first
+        form tells nothing of, and none that takes MOST_SIMULATIONS."""
         usual, *others = fitting_forms(self.case, self.fit.effects, effect)
         others = [item for item in others if in_every_form and simulations(self.case, item) < MOST_SIMULATIONS]
         first = self.score(usual)
         if first.explained <= LEAST_SCORE:
-            others = [item for item in others if not is_costly(blocks[effect]) and not is_costly(blocks[item])]
+            costly = is_costly(blocks[effect])
+            others = [item for item in others if enters_drive(item) or not (costly or is_costly(blocks[item]))]
         return [first, *(self.score(item, first.shapes) for item in others)]
 
     def score(self, effect: str, near: Sequence[Mapping[str, float]] = ()) -> Score:

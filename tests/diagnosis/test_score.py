@@ -317,6 +317,15 @@ def test_a_ripple_that_the_hysteresis_bends_scores_more_than_a_line_on_the_readi
     assert ripple.explained > 0.9 > line.explained + 0.1
 
 
+def test_a_ripple_is_scored_where_a_line_on_the_reading_explains_little(monkeypatch):
+    """What shakes the hysteresis may be far too small to be read."""
+    case = stage.case(stage.EFFECTS["amplifier_lag"])
+    monkeypatch.setattr(score_module, "LEAST_SCORE", 0.1)
+    first, *others = Scorer(case, first_fit(case, 0)).scores("periodic_disturbance")
+    assert first.explained < 0.1
+    assert [score.effect for score in others] == ["periodic_disturbance.ripple"]
+
+
 def test_mains_that_explain_nearly_as_much_are_all_refitted():
     """What a ripple does to the hysteresis tells little of its frequency."""
     case = rippled_case(frequency=60.0)
