@@ -34,7 +34,7 @@ class Suspect:
     @property
     def rank(self) -> tuple[bool, bool, bool, bool, float]:
         """The order in which effects are taken out."""
-        return not self.displaced, self.beyond_form, not self.strangers, not self.on_bounds, self.share
+        return not self.displaced, self.beyond_form, not self.strangers, not (self.on_bounds or self.limit), self.share
 
     @property
     def is_doubtful(self) -> bool:

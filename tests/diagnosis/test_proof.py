@@ -403,6 +403,13 @@ def test_a_line_of_few_periods_in_the_stroke_is_one_only_where_the_model_is_adeq
     assert taken_out(of(none=30, a=left), curves=["a"], lines=["a"]) == suspects
 
 
+def test_what_is_something_else_is_taken_out_ahead_of_what_takes_up_less(taken_out):
+    """Far from the noise too, where all are judged and the least of them is enough."""
+    errors = of(none=30, a=8.0, b=9.0, ab=2.5)
+    assert taken_out(errors) == []
+    assert taken_out(errors, curves=["a"])[-1:] == ["a"] and taken_out(errors, curves=["b"])[-1:] == ["b"]
+
+
 @pytest.mark.parametrize(("alone", "suspects"), [(4.0, ["b", "a"]), (20.0, ["a"])])
 def test_what_is_little_beside_something_else_may_be_what_its_form_leaves(taken_out, alone, suspects):
     """alone: the error beside a play, of 30 noise floors, without the second effect."""
