@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import removed_rms
+from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.model.block import Place
 from pzt_ident.model.registry import blocks, form_of, word_of
@@ -32,8 +32,10 @@ def at_noise(case: Case, fit: Fit) -> bool:
 
 
 def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
-    """Whether a fit with a look-alike in the place of an effect is hardly worse."""
-    return is_equal(case, fit, rival) and are_look_alikes(effect, rival.effects[-1])
+    """Whether a fit with a look-alike in the place of an effect is hardly worse, or only on the records kept back, and
+    less so than either is off there."""
+    equal = is_equal(case, fit, rival) or is_equal_where_fitted(case, fit, rival)
+    return equal and are_look_alikes(effect, rival.effects[-1])
 
 
 def is_twin(case: Case, effect: str, forms: Collection[Fit], rival: Fit) -> bool:
@@ -49,6 +51,16 @@ def is_equal(case: Case, fit: Fit, rival: Fit) -> bool:
     """Whether a rival is hardly worse than a fit."""
     close = removed_rms(rival.total, fit.total) < 2 * TIE * case.floor
     return close or rival.total < (1 + LOOK_ALIKE_TIE) * fit.total
+
+
+def is_equal_where_fitted(case: Case, fit: Fit, rival: Fit) -> bool:
+    """Whether a rival is hardly worse on the identification records, and by less on the others than what a fit itself
+    leaves there above the noise, and clearly does: what these show that the former do not tells of neither."""
+    if fit.validate is None or rival.validate is None:
+        return False
+    close = removed_rms(rival.identify, fit.identify) < 2 * TIE * case.floor
+    left, worse = removed_rms(fit.validate, case.floor), removed_rms(rival.validate, fit.validate)
+    return close and left > CLEAR * case.floor and worse < left
 
 
 def strangers(effect: str, rivals: Collection[str]) -> tuple[str, ...]:

@@ -371,7 +371,7 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
     """twin: whether the delay, which is worse, fits as another form of the friction does."""
 
     def fitted(word, total, freedom):
-        return SimpleNamespace(effects=("creep", word), total=total, identify=total, freedom=freedom)
+        return SimpleNamespace(effects=("creep", word), total=total, identify=total, validate=None, freedom=freedom)
 
     now, rival, worse = (
         fitted("friction.coulomb", 1.1, 3),
@@ -398,7 +398,7 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
 def test_a_simpler_one_that_leaves_the_noise_is_tied_and_not_taken(monkeypatch, own, other, taken):
     words = "sensor_lag.second_order", "delay"
     now, simpler = (
-        SimpleNamespace(effects=("creep", word), total=total, identify=total, freedom=freedom)
+        SimpleNamespace(effects=("creep", word), total=total, identify=total, validate=None, freedom=freedom)
         for word, total, freedom in zip(words, (own, other), (2, 1), strict=True)
     )
     fits = {"sensor_lag.second_order": [simpler]}
@@ -454,7 +454,7 @@ def test_a_form_that_may_contain_the_effect_is_no_exchange_but_a_tie_far_above_t
     """And one of no more parameters is a tie at the noise as well."""
 
     def fitted(item, total, freedom=1):
-        return SimpleNamespace(effects=("creep", item), total=total, identify=total, freedom=freedom)
+        return SimpleNamespace(effects=("creep", item), total=total, identify=total, validate=None, freedom=freedom)
 
     now, worse = fitted("delay", total), fitted("creep", 9)
     better = fitted("sensor_lag.third_order", total - 0.002, freedom)
@@ -543,7 +543,7 @@ def test_what_is_tied_beside_an_unproven_effect_is_a_rival_too(monkeypatch, besi
     """Without the memory, creep fits worse than the lag in its place; with the memory as well."""
 
     def fitted(*effects, total):
-        return SimpleNamespace(effects=effects, total=total, identify=total)
+        return SimpleNamespace(effects=effects, total=total, identify=total, validate=None)
 
     alone, doubted = fitted("sensor_lag", total=1.3), fitted("memory", "sensor_lag", total=1.1)
     delay = fitted("memory", "delay", total=1.2)
@@ -561,7 +561,7 @@ def test_what_is_tied_beside_an_unproven_effect_is_a_rival_too(monkeypatch, besi
 @pytest.mark.parametrize(("as_rivals", "guess", "total"), [(True, 3, 1.1), (True, 1, 2.0), (False, 3, 2.0)])
 def test_a_rival_that_explains_as_much_by_its_score_is_started_elsewhere(monkeypatch, as_rivals, guess, total):
     def fitted(effects, total):
-        return SimpleNamespace(effects=effects, total=total, identify=total)
+        return SimpleNamespace(effects=effects, total=total, identify=total, validate=None)
 
     score = {
         "sensor_lag": Score("sensor_lag", 0.8),

@@ -25,6 +25,21 @@ def test_far_above_the_noise_look_alikes_are_a_tie_to_one_percent(share, close):
 
 
 @pytest.mark.parametrize(
+    ("best", "rival", "close"),
+    [
+        ((1.1, 2.8), (1.15, 3.0), True),  # both are off where neither was fitted
+        ((1.1, 2.8), (1.15, 4.5), False),  # one far more than the other
+        ((1.1, 1.05), (1.15, 1.5), False),  # one is at the noise there
+        ((1.1, 2.8), (1.3, 3.0), False),  # one fits worse
+        ((1.1, None), (1.5, None), False),
+    ],
+)
+def test_what_tells_look_alikes_apart_by_less_than_both_are_off_tells_nothing(best, rival, close):
+    fits = fit(*best, ["cubic_stiffness"]), fit(*rival, ["saturation"])
+    assert is_tied(CASE, "cubic_stiffness", *fits) == close
+
+
+@pytest.mark.parametrize(
     ("apart", "word", "twin"),
     [(9e-4, "kinematic_coupling", True), (1.1e-3, "kinematic_coupling", False), (0.0, "creep", False)],
 )
