@@ -125,53 +125,63 @@ def _follows_anything(effect: str) -> bool:
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Refit the model with each effect, in its first form and in the one that scores best; gives the refitted ones, all
-    that the budget suffices for, but at least the best one beside the model as given. Those that stay far above
-    what the best score leads to are given up; where that is adequate, none is refitted that is far from it. As long as
-    no effect explains most, a disturbance is refitted in all of its forms; after that, only if it is one of the first
-    SHORTLIST, and in those two."""
-    fits: list[Fit] = []
-    rival, in_every_form = np.inf, set[str]()
-
-    def may_stand(candidate: Candidate) -> bool:
-        if not any(adequate(case, first, fit) for fit in fits):
-            return True
-        alike = are_look_alikes(candidates[0].score.effect, candidate.score.effect)
-        return alike or candidate.score.explained >= NOT_ALL
-
-    def share_allowed(candidate: Candidate) -> float:
-        best, score = candidates[0].score, candidate.score
-        if candidate is candidates[0] and score.explained >= DECISIVE:
-            return PROVING
-        as_likely = score.explained >= AS_LIKELY * best.explained
-        return EXPLORING if as_likely else share_of_others(case, first, before, fits)
-
-    def allowed(candidate: Candidate) -> bool:
-        if is_disturbance(candidate) and not any(explains_most(case, before, fit) for fit in fits):
-            in_every_form.add(candidate.score.effect)
-        elif candidate in candidates[SHORTLIST:]:
-            return False
-        needed = before is first and candidate is candidates[0]
-        allows = partial(case.budget.allows, "the refits of all candidates", share_allowed(candidate))
-        return needed or (may_stand(candidate) and allows())
-
-    def refitted(candidate: Candidate) -> Candidate:
-        some = candidate.forms[0], candidate.score
-        scores = candidate.forms if candidate.score.effect in in_every_form else some
-        candidate.refits = refit_forms(case, before, scores, rival)
-        return candidate
-
-    made: list[Candidate] = []
-    for some in (candidates[:1], candidates[1:]):
-        for candidate in side_by_side(refitted, filter(allowed, some)):
-            if candidate is candidates[0]:
-                refit_likely_forms(case, first, before, candidate)
-            made.append(candidate)
-            fits.extend(candidate.refits.values())
-        rival = min((fit.identify for fit in fits), default=np.inf)
+    """Refit the model with each effect of a short list, in its first form and in the one that scores best; gives the
+    refitted ones, all that the budget suffices for, but at least the best one beside the model as given. Those that
+    stay far above what the best score leads to are given up; where that is adequate, none is refitted that is far from
+    it. As long as no effect explains most, a disturbance is refitted in all of its forms; after that, only if it is one
+    of the first SHORTLIST, and in those two."""
+    refits = Refits(case, first, before, candidates)
+    made = [candidate for some in (candidates[:1], candidates[1:]) for candidate in refits.of(some)]
     if before is first and made:
         refit_astray(case, first, made)
     return made
+
+
+class Refits:
+    """The refits of a short list, one after the other: which of them are worth it depends on those before."""
+
+    def __init__(self, case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> None:
+        self.case, self.first, self.before, self.candidates = case, first, before, candidates
+        self.fits: list[Fit] = []
+        self.rival, self.in_every_form = np.inf, set[str]()
+
+    def of(self, candidates: Sequence[Candidate]) -> Iterator[Candidate]:
+        """Some of the candidates, refitted, as far as they are allowed; none is given up for another one of them."""
+        for candidate in side_by_side(self._refitted, filter(self._is_allowed, candidates)):
+            if candidate is self.candidates[0]:
+                refit_likely_forms(self.case, self.first, self.before, candidate)
+            self.fits.extend(candidate.refits.values())
+            yield candidate
+        self.rival = min((fit.identify for fit in self.fits), default=np.inf)
+
+    def _is_allowed(self, candidate: Candidate) -> bool:
+        if is_disturbance(candidate) and not any(explains_most(self.case, self.before, fit) for fit in self.fits):
+            self.in_every_form.add(candidate.score.effect)
+        elif candidate in self.candidates[SHORTLIST:]:
+            return False
+        if self.before is self.first and candidate is self.candidates[0]:
+            return True
+        share = self._share_allowed(candidate)
+        return self._may_stand(candidate) and self.case.budget.allows("the refits of all candidates", share)
+
+    def _may_stand(self, candidate: Candidate) -> bool:
+        if not any(adequate(self.case, self.first, fit) for fit in self.fits):
+            return True
+        alike = are_look_alikes(self.candidates[0].score.effect, candidate.score.effect)
+        return alike or candidate.score.explained >= NOT_ALL
+
+    def _share_allowed(self, candidate: Candidate) -> float:
+        best, score = self.candidates[0].score, candidate.score
+        if candidate is self.candidates[0] and score.explained >= DECISIVE:
+            return PROVING
+        as_likely = score.explained >= AS_LIKELY * best.explained
+        return EXPLORING if as_likely else share_of_others(self.case, self.first, self.before, self.fits)
+
+    def _refitted(self, candidate: Candidate) -> Candidate:
+        some = candidate.forms[0], candidate.score
+        scores = candidate.forms if candidate.score.effect in self.in_every_form else some
+        candidate.refits = refit_forms(self.case, self.before, scores, self.rival)
+        return candidate
 
 
 def refit_forms(case: Case, before: Fit, scores: Sequence[Score], rival: float) -> dict[str, Fit]:
