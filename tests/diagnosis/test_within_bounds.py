@@ -5,8 +5,12 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.bounds import Widened, beyond_bounds, beyond_names
+from pzt_ident.diagnosis.climb import WIDER, Staircase
+from pzt_ident.diagnosis.least_bounds import WITHIN, with_least_bounds
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
+from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.within_bounds import adding_effects, beyond_known_sentence, within_bounds_sentence
 from pzt_ident.model.registry import blocks
 
@@ -47,6 +51,21 @@ def test_a_payload_is_named_where_the_stiffness_is_known_and_the_bound_where_it_
     said = beyond_known_sentence(case, found.end)
     assert said.startswith(" Without load_mass it fits as well with lumped.stiffness = ") == bool(named)
     assert bool(beyond_names(case, found.end)) == (not named)
+
+
+@pytest.mark.parametrize(("width", "named"), [(0.004, ("load_mass",)), (0.2, ())])
+def test_a_staircase_in_wider_bounds_ends_with_the_payload_where_the_stiffness_is_known(width, named):
+    case = weighed({"lumped.load": 0.006}, 0.998, 0.998 + width)
+    first = first_fit(case, 0)
+    wide, end = beyond_bounds(case, first, first)
+    steps = [Step(first), Step(end, change=WIDER, case=wide)]
+    given = Staircase(steps, Diagnosis("adequate", "", end, [], []), case=wide)
+    found = with_least_bounds(case, given)
+    assert found.end.effects == named and (found.case is None) == bool(named)
+    assert found.last.before is found.end
+    assert [step.change for step in found.steps] == ["", WIDER, *([WITHIN, ""] if named else [])]
+    if named:
+        assert found.end.identify < 1.1 * end.identify and beyond_names(case, found.end) == {}
 
 
 def test_a_stiffness_above_its_bound_is_no_payload():
