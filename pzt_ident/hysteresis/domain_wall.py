@@ -3,7 +3,7 @@
 from math import nan
 
 from pzt_ident.errors import InputError
-from pzt_ident.model.block import Block, Place, expm1
+from pzt_ident.model.block import Bank, Place, expm1
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -14,7 +14,7 @@ STEPS_TO_FIRST = 32  # of Runge and Kutta, from zero field to the first sample
 
 
 @blocks.register
-class DomainWall(Block):
+class DomainWall(Bank):
     """y = b P,  P = c P_an + (1 - c) P_irr,  P_an = P_s tanh((E + alpha P) / a),
     dP_irr/dE = g / (k - alpha g), g = max(sign(dE) (P_an - P_irr), 0).
 
@@ -23,9 +23,13 @@ class DomainWall(Block):
     unpolarized state at zero field. Where g reaches k / alpha, which violates eq. 9, the walls run away: they then
     jump, at most onto the anhysteretic curve, and the result reports it. A candidate with c alpha P_s >= a, for which
     P has no unique solution, fails. As in all models of this kind minor loops do not close, unless they are biased.
+
+    What an actuator does beside its hysteresis adds b P_s / a times what it makes of the drive, the slope of P_an
+    without a mean field.
     """
 
     place = Place.OPERATOR
+    branches = 1
     violation = (
         "domain walls run away, against condition (9) of Smith & Salapaka, k > alpha |P_an - P_irr|: there the model "
         "jumps onto its anhysteretic curve. Raise `domain_wall.pinning`, lower `domain_wall.coupling` (with alpha P_s "
@@ -64,7 +68,10 @@ class DomainWall(Block):
     def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
         pin, _ = irreversible_step(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
         an = anhysteretic(pin, u, ANHYSTERETIC, per_width, coupling, reversible)
-        return pin, u, saturation * (reversible * an + (1 - reversible) * pin)
+        return pin, u, saturation * (reversible * an + (1 - reversible) * pin - u * per_width)
+
+    def output(u, total, saturation, per_width, coupling, pinning, reversible):
+        return total + saturation * per_width * u
 
 
 class Biased(DomainWall):
@@ -92,11 +99,14 @@ class Biased(DomainWall):
             pin, before, p, way, side, end, p_end, (share, field, worth, shift),
             u, per_width, coupling, pinning, reversible,
         )  # fmt: skip
-        return *loop, *curve, saturation * loop[2]
+        return *loop, *curve, saturation * (loop[2] - u * per_width)
 
 
 class Margin(DomainWall):
     """The margin of eq. 9, (k - alpha g) / k, which must stay above zero."""
+
+    def output(u, total, saturation, per_width, coupling, pinning, reversible):
+        return total
 
     def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
         pin, margin = irreversible_step(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
@@ -105,6 +115,8 @@ class Margin(DomainWall):
 
 class BiasedMargin(Biased):
     """The margin of eq. 9 with biased minor loops."""
+
+    output = Margin.output
 
     def step(
         pin, before, p, way, side, end, p_end, share, field, worth, shift,
