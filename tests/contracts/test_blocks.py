@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.engine.kernel import WIDTH
+from pzt_ident.engine.kernel import TILE, WIDTH
 from pzt_ident.engine.simulator import Simulator, simulate
 from pzt_ident.model.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
 from pzt_ident.model.registry import blocks
@@ -246,6 +246,18 @@ def test_batch_is_each_alone(words):
     assert_close(simulate(chain, measured, theta[::-1])[::-1], found)
 
 
+@pytest.mark.parametrize("words", [*CHAINS, *(f"amplifier_lag {word}" for word in at(Place.OPERATOR))])
+def test_candidates_that_differ_in_one_parameter_are_each_as_alone(words):
+    """What they have in common may be simulated once, as a rest of all, behind which they go apart."""
+    moving = waves(6)
+    chain, measured, theta = made(words, np.concatenate([np.full(2 * TILE, moving[0]), moving]), count=2)
+    one, other = theta[:2]
+    rows = [one, *(np.where(np.arange(one.size) == column, other, one) for column in range(one.size))]
+    batch = np.array(rows)[:LANES]
+    found = simulate(chain, measured, batch)
+    assert_close(found, np.array([simulate(chain, measured, candidate)[0] for candidate in batch]))
+
+
 @pytest.mark.parametrize("words", CHAINS)
 def test_a_candidate_that_fails_leaves_the_others_alone(words):
     chain, measured, theta = made(words, waves(2), count=LANES)
@@ -279,6 +291,19 @@ def test_operator_behind_a_block_is_the_one_on_the_drive(word, drive, seed):
     theta = candidates(behind, SPAN, 30, seed)
     expected = simulate(model(word), measured, theta)
     assert_close(simulate(behind, measured, theta), expected, rounding(behind, measured, theta))
+
+
+@pytest.mark.parametrize(
+    "word", [word for word in [*IN_CHAIN, *FORMS] if block_of(word).place == Place.OPERATOR and word not in EFFECTS]
+)
+def test_every_operator_has_a_prompt_response_that_an_actuator_acts_on(word):
+    """What bends the voltage beside the hysteresis bends the response, more the more it does."""
+    chain, measured = model(word, "quadratic_gain"), record(waves(1))
+    theta = np.repeat(candidates(chain, SPAN, 1, seed=2), 3, axis=0)
+    theta[:, chain.names.index("quadratic_gain.curvature")] = 0.0, 1e-3, 2e-3
+    straight, bent, twice = simulate(chain, measured, theta)[:, 0]
+    assert np.ptp(bent - straight) > 0
+    assert_close(twice - straight, 2 * (bent - straight), 1e-6 * np.ptp(twice))
 
 
 @pytest.mark.parametrize("word", OPERATORS)
