@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.drive_noise import without_noise
 from pzt_ident.data.periods import period_of
 from pzt_ident.data.projections import (
     MOST_MEMORY,
@@ -122,13 +123,15 @@ class Rest:
 
 
 def still_rests(drive: Array, response: Array) -> list[Rest]:
-    """The last four fifths of each interval of constant drive, or less where these still settle, less a quartic, which
-    follows creep, and the lines of the mains and the floor; none of a short rest in which the reading hangs."""
+    """The last four fifths of each interval of a drive that is constant but for its noise, or less where these still
+    settle, less a quartic, which follows creep, that noise, which a stage may follow, and the lines of mains and floor;
+    none of a short rest in which the reading hangs."""
     found = []
-    for first, last in rests(drive):
+    for first, last in rests(np.array([without_noise(row) for row in drive])):
         first += (last - first) // 5
         if last - first >= SHORT and (last - first >= LONG or np.ptp(response[first:last]) > 0):
-            rest = Rest(*settled(response[first:last]))
+            noisy = [row[first:last] for row in drive if np.ptp(row[first:last]) > 0]
+            rest = Rest(*settled(response[first:last], noisy))
             if rest.memory < MOST_MEMORY:  # what rings or settles is more alike from sample to sample
                 found.append(rest)
     return found
@@ -160,13 +163,13 @@ def rest_noise(found: Sequence[Rest], seconds: Array, step: float) -> list[Estim
     return [rest.estimate(memory) for rest in found]
 
 
-def settled(signal: Array) -> tuple[Array, Array]:
-    """A signal less a quartic and lines, and their basis: of its later half, and so on, while the earlier one has DECAY
-    times its variance."""
-    noise, basis = without_lines(signal, 4)
+def settled(signal: Array, followed: Sequence[Array] = ()) -> tuple[Array, Array]:
+    """A signal less a quartic, what it follows and lines, and their basis: of its later half, and so on, while the
+    earlier one has DECAY times its variance."""
+    noise, basis = without_lines(signal, 4, followed)
     half = noise.size // 2
     if half >= LONG and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
-        return settled(signal[half:])
+        return settled(signal[half:], [row[half:] for row in followed])
     return noise, basis
 
 

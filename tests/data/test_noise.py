@@ -310,6 +310,17 @@ def test_a_rest_is_one_of_all_drives():
     assert still_rests(np.array([still, moving]), white(1000)) == []
 
 
+@pytest.mark.parametrize("gain", [0.0, 5e3])
+def test_a_drive_that_rests_but_for_its_noise_rests(gain):
+    """And what the stage follows of that noise is none of its reading."""
+    noise = np.random.default_rng(8).normal(0, 1e-3, 2000)
+    drive = np.concatenate([np.linspace(0, 50, 500), np.full(1000, 50.0), np.linspace(50, 0, 500)]) + noise
+    found = still_rests(drive[None], white(2000) + gain * drive)
+    longest = max(found, key=lambda rest: rest.noise.size)
+    assert longest.noise.size > 400 and sum(rest.noise.size for rest in found) <= 800
+    assert longest.estimate().value == pytest.approx(1, rel=0.1)
+
+
 def test_records_are_measured_again_where_all_drives_and_the_sample_time_are_the_same():
     one, two, other = (white(1000, seed=seed) for seed in (1, 2, 3))
     more = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("m", None)}
