@@ -78,7 +78,7 @@ def unproven(
     doubted = [item.effect for item in suspects]
     for axis in range(axes) if axes > 1 and suspects else ():
         unsure = {item.effect for item in judge(axis)}
-        doubted = [effect for effect in doubted if effect in unsure or not is_clear(case, now, effect, axis)]
+        doubted = [effect for effect in doubted if effect in unsure or not is_clear(case, first, now, effect, axis)]
     if len(doubted) == len(suspects):
         return suspects
     suspects = []
@@ -97,10 +97,13 @@ def simulated_too_coarsely(case: Case, first: Fit, now: Fit, known: Sequence[Fit
     return found
 
 
-def is_clear(case: Case, now: Fit, effect: str, axis: int) -> bool:
-    """Whether an effect takes up more of what is measured on an axis than the form of any other may leave."""
-    before = on_axis(refit(case, now, effects_without(now, effect), {}), axis)
-    return removed_rms(before.identify, on_axis(now, axis).identify) > MOST_OF_OTHERS * case.on_axis(axis).floor
+def is_clear(case: Case, first: Fit, now: Fit, effect: str, axis: int) -> bool:
+    """Whether an effect takes up more of what is measured on an axis than the form of any other may leave; of many
+    amounts, which take up a part of anything, whether it leads to the noise there, too."""
+    view, before = case.on_axis(axis), on_axis(refit(case, now, effects_without(now, effect), {}), axis)
+    if is_of_many(effect) and not adequate(view, on_axis(first, axis), on_axis(now, axis)):
+        return False
+    return removed_rms(before.identify, on_axis(now, axis).identify) > MOST_OF_OTHERS * view.floor
 
 
 def taken_out(

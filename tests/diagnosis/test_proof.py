@@ -386,6 +386,22 @@ def test_what_is_clear_on_one_axis_is_proven_whatever_another_lacks(curvature, s
     assert [item.effect for item in unproven(case, first, alone, {})] == ["drift"]
 
 
+@pytest.mark.parametrize(("rest", "suspects"), [(0.0, []), (2.0, ["quadratic_gain"])])
+def test_what_has_many_amounts_is_proven_on_one_axis_only_at_its_noise(monkeypatch, rest, suspects):
+    """rest: of x, in noise floors, root mean square, which a bend of many amounts would leave; y wanders."""
+
+    def wander(size, record):
+        steps = np.random.default_rng(5).normal(0, 1, record.drive.shape[1])
+        return size * stage.NOISE * np.interp(np.arange(steps.size), np.arange(0, steps.size, 50), steps[::50])
+
+    bent = stage.with_response(stage.case({"quadratic_gain.curvature": 1e-3}), lambda record: wander(rest, record))
+    case = stage.beside(bent, stage.with_response(stage.case(seed=9), lambda record: wander(30.0, record)))
+    first = first_fit(case, 0)
+    now = refit(case, first, ("quadratic_gain",), {"x.quadratic_gain.curvature": 1e-3})
+    monkeypatch.setattr(proof, "is_of_many", lambda effect: True)
+    assert [item.effect for item in unproven(case, first, now, {})] == suspects
+
+
 def test_a_line_of_the_spectrum_is_proven_beside_any_rest(taken_out):
     errors = of(none=30, a=25, b=27, ab=22)
     assert {*taken_out(errors)} == {"a", "b"}
