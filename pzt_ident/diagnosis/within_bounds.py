@@ -52,8 +52,10 @@ def makes_up_for_known(case: Case, beyond: Fit, effect: str) -> bool:
 def beyond_known_sentence(case: Case, fit: Fit) -> str:
     """A sentence about each effect of a fit without which the model fits as well beyond the bounds of what is known;
     empty where there is none."""
-    text = ""
+    text, adding = "", {item for block in fit.problem.model.blocks for item in added_to(block)}
     for effect in fit.effects[len(case.effects) :]:
+        if word_of(effect) not in adding:
+            continue
         wide = beyond_by(SLIP, case, refit(case, fit, effects_without(fit, effect), {}))
         if wide and makes_up_for_known(case, wide[1], effect) and is_equal(case, fit, wide[1]):
             units = dict(zip(wide[1].problem.names, wide[1].problem.units, strict=True))
