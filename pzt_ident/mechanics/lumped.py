@@ -9,7 +9,9 @@ from pzt_ident.model.first_order_hold import mode, oscillate
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
-RUBBING = "friction.motion", "friction.coulomb_motion", "friction.slip", "friction.elastoplastic"
+BRISTLES = "friction.motion", "friction.elastoplastic"
+BUILT_UP = *BRISTLES, "friction.slip"
+RUBBING = *BUILT_UP, "friction.coulomb_motion"
 
 
 @blocks.register
@@ -37,24 +39,15 @@ class Lumped(Oscillator):
         (1e-3, 0.5),
         "Displacement over which friction builds up.",
         scale="log",
-        effect=("friction.motion", "friction.slip", "friction.elastoplastic"),
+        effect=BUILT_UP,
         limit=PLAY,
         small_to="friction",
     )
     stiction = Parameter(
-        "1",
-        (0, 0.5),
-        "Excess of the break-away force, as a share of friction.",
-        null=0,
-        effect=("friction.motion", "friction.elastoplastic"),
+        "1", (0, 0.5), "Excess of the break-away force, as a share of friction.", null=0, effect=BRISTLES
     )
     stribeck = Parameter(
-        "response/s",
-        (1e-3, 100),
-        "Speed at which stiction has faded.",
-        scale="log",
-        effect=("friction.motion", "friction.elastoplastic"),
-        end="both",
+        "response/s", (1e-3, 100), "Speed at which stiction has faded.", scale="log", effect=BRISTLES, end="both"
     )
     speed = Parameter(
         "response/s",
