@@ -55,4 +55,4 @@ def is_far(fact: Facts, usual: float | None) -> bool:
 def phrase(fact: Facts, usual: float) -> str:
     unit = fact["unit"]
     own, others = (quantity(value / factor(unit), unit) for value in (fact["value"], usual))
-    return f"its {fact['what']} is {own}, and {others} is usual"
+    return f"{fact['what']} {own}, usually {others}"

@@ -157,9 +157,10 @@ class Lot:
 
     def of_units(self) -> list[str]:
         """A sentence on each of the first devices that were measured unlike the others, and one on how many more."""
-        lines = [f"{device} was measured unlike the others: {'; '.join(told)}." for device, told in self.unlike.items()]
+        unlike = "was measured unlike the others"
+        lines = [f"{device} {unlike}: {'; '.join(told)}. Are the units right?" for device, told in self.unlike.items()]
         more = len(lines) - MOST_TOLD
-        return [*lines[:MOST_TOLD], *[f"So were {more} more: are the units right?"] * (more > 0)]
+        return [*lines[:MOST_TOLD], *[f"So were {more} more."] * (more > 0)]
 
     def of_readings(self) -> list[str]:
         """A sentence on each of the first devices whose readings look wrong, and one on how many more there are."""
