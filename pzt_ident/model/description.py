@@ -123,7 +123,8 @@ def _block(name: str) -> Facts:
     choices = _settings(block)
     own = ", ".join(f"{word}: {block.setting(word)}" for word in block.settings() if word != "form")
     chosen: Facts = {"settings": choices} if choices else {}
-    chosen |= {"in_a_job": f"{{name: {name}, {own}}}"} if own else {}
+    written = f"{{name: {name}, {own}}}" if own else f"model: [{name}, bouc_wen]" if block.lead else ""
+    chosen |= {"in_a_job": written} if written else {}
     return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
 
 

@@ -276,9 +276,10 @@ class TestWords:
     def test_settings_are_shown_as_a_job_may_have_them(self, folder):
         shown = {word: json.loads(call("show", word, "--json").stdout).get("in_a_job") for word in blocks.words()}
         written = {word: item for word, item in shown.items() if item}
-        assert {"homogenized_energy", "domain_wall", "modal"} <= set(written)
+        assert {"homogenized_energy", "domain_wall", "modal", "history"} <= set(written)
         for word, item in written.items():
-            model = f"[{item}]" if blocks.kind_of(word) == "hysteresis" else f"[bouc_wen, {item}]"
+            chain = f"[{item}]" if blocks.kind_of(word) == "hysteresis" else f"[bouc_wen, {item}]"
+            model = item.removeprefix("model: ") if item.startswith("model: ") else chain
             job = JOB.replace("model: [bouc_wen]", f"model: {model}").replace("  bouc_wen.gamma: {value: 0.01}\n", "")
             (folder / "job.yaml").write_text(job.replace("parameters:\n", ""))
             assert call("check", "job.yaml", "--quiet").exit_code == 0, item
