@@ -13,7 +13,7 @@ class RateDependence(Term):
     Down to 0.01 V/s, below which alpha is constant. Logarithmic in the rate, as in Ang, Khosla & Riviere (2007),
     IEEE/ASME Trans. Mechatronics 12, 134; half-widths: Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18,
     1498. Unlike a lag, which is linear in rate and amplitude, it vanishes for small amplitudes. In data of one rate
-    alpha absorbs it.
+    alpha absorbs it. Of a drive in another unit than volts both rates are in its SI unit, as 100 A/s.
     """
 
     form = Form(
