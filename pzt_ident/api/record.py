@@ -49,7 +49,7 @@ class Record:
     simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which the stage
     rested until one sample before the first, a number or text such as `"0 V"`, of all axes or by axis.
     denoise_drive: whether noise of the drive, as of a monitor output, is left out. smooth_drive: whether the drive is
-    smooth between its samples, and not linear. steps: of the simulation in a sample.
+    smooth between its samples, and not linear, by default as the model takes it. steps: of the simulation in a sample.
     Raises InputError where shapes or units do not fit; gaps, time stamps and constant responses are looked at when the
     record is identified from.
     """
