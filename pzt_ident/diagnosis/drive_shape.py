@@ -21,6 +21,7 @@ SMOOTH = "drives smooth between their samples"  # the step after which they are
 LINEAR = "drives on lines between their samples"  # the same where the model takes them as smooth by itself
 PROBE = "delay"  # the effect that feels it most
 PROMISING = 0.02  # of the misfit of the model as given, or of that with a delay
+LITTLE = 3.0  # noise floors, that drives leave which are hardly off the lines
 UNLIKE = 0.02  # of its deviation, by which a drive midway between its samples is off the line
 
 
@@ -37,10 +38,13 @@ def other_behind(case: Case, first: Fit, best: Fit | None) -> tuple[Case, Fit] |
 
 def other_beside(case: Case, first: Fit, fit: Fit, least: float) -> tuple[Case, Fit] | None:
     """The same where such drives remove that share of what a fit leaves, or one with a delay beside it; where they are
-    hardly off the lines, only if they lead to the noise: of what anything else leaves, they may take up a part."""
+    hardly off the lines, only if they lead to the noise: of what anything else leaves, they may take up a part. Nor are
+    they asked then of a fit that leaves more than a little, unless the model takes them as smooth by itself."""
     if adequate(case, first, fit) or (other := reshaped(case)) is case:
         return None
     unlike = any(is_off_lines(record, UNLIKE) for record in case.records)
+    if not (unlike or takes_smooth(case) or fit.total < LITTLE * case.floor):
+        return None
     probed = [(PROBE,)] if PROBE in applicable(case, fit.effects) else []
     for more in ((), *probed):
         if not case.budget.allows(SMOOTH):
