@@ -30,6 +30,7 @@ def begin(seconds: float) -> None:
     _counted.seconds = seconds
 
 
-def of_run(candidates: int, steps: int, rows: int) -> float:
-    """Seconds of so many candidates, each with so many rows of the scratch, through so many steps of time."""
-    return CALL + (LANE + ROW * rows) * candidates * steps
+def of_run(candidates: int, steps: int, rows: int, solving: float = 0.0) -> float:
+    """Seconds of so many candidates, each with so many rows of the scratch, through so many steps of time. solving: s,
+    of each step, what blocks solve for in it (`Block.solving`)."""
+    return CALL + (LANE + ROW * rows + solving) * candidates * steps

@@ -30,6 +30,7 @@ class DomainWall(Bank):
 
     place = Place.OPERATOR
     branches = 1
+    solving = 2.5e-8
     violation = (
         "domain walls run away, against condition (9) of Smith & Salapaka, k > alpha |P_an - P_irr|: there the model "
         "jumps onto its anhysteretic curve. Raise `domain_wall.pinning`, lower `domain_wall.coupling` (with alpha P_s "

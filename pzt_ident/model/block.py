@@ -95,6 +95,7 @@ class Block:
     about_rest: ClassVar[bool] = False  # whether it is nonlinear in the displacement from rest
     refines: ClassVar[tuple[str, ...]] = ()  # operators which with it are no more than finer
     alike: ClassVar[tuple[str, ...]] = ()  # parameters of each record that together are as large in all of them
+    solving: ClassVar[float] = 0.0  # s of a core, in a step of a candidate: equations that it solves by iteration
     line: ClassVar[str] = ""  # its frequency or period, if it is a line of the spectrum over time or displacement
     flexible: ClassVar[bool] = False  # whether it follows a part of any slow misfit, in the records kept back as well
     loops: ClassVar[bool] = False  # whether it is a hysteresis operator of its own, beside the model's

@@ -24,6 +24,14 @@ def test_the_same_simulation_is_the_same_work_however_often_it_was_done(problem)
     assert np.ptp([done_by(problem.loss, points) for _ in range(4)]) == pytest.approx(0, abs=1e-12)
 
 
+def test_what_a_block_solves_for_is_work():
+    """A step of domain walls takes ten times as long as one of Bouc-Wen."""
+    case = stage.case({})
+    walls, loops = (case.with_words((word,)).problem(()) for word in ("domain_wall", "bouc_wen"))
+    points = np.random.default_rng(0).uniform(size=(512, walls.dimensions))
+    assert done_by(walls.loss, points) > 4 * done_by(loops.loss, points[:, : loops.dimensions])
+
+
 def test_more_candidates_samples_and_blocks_are_more_work(problem):
     def seconds(candidates, problem):
         return done_by(problem.loss, np.random.default_rng(0).uniform(size=(candidates, problem.dimensions)))
