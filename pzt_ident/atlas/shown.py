@@ -87,8 +87,8 @@ class Shown:
         return mine + [Value(f"{self.block.name}.{p.name}", scale * amount, unit) for p, amount, unit, scale in amounts]
 
     def _declares(self, parameter: Parameter, block: type) -> bool:
-        own = {self.block.name, self.block.item()}
-        return bool(own & {*parameter.effects}) if parameter.effects else block is self.block
+        items = {self.block.name, self.block.item()}
+        return bool(items & {*parameter.effects}) if parameter.effects else block is self.block
 
     def _theta(self, share: float) -> Array:
         problem = self.stage.problem

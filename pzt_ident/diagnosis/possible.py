@@ -43,7 +43,7 @@ def held_by(case: Case, effects: tuple[str, ...], item: str) -> object:
         return item
     names, chain = {word_of(item), item}, blocks.chain((*case.words, *effects))
     declared = (
-        (block, word) for block in chain for word, each in block.parameters().items() if names & {*each.effects}
+        (block, word) for block in chain for word, item in block.parameters().items() if names & {*item.effects}
     )
     return frozenset((*declared, *((block, name) for block in chain for name in names if name in block.forms)))
 

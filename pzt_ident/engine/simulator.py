@@ -257,8 +257,7 @@ class Simulator:
         since = self._program.lead * fine
         tiles = self._program.tiles + self.additions.tiles
         run(steps, signals, scratch, candidates, tiles, first * fine, last * fine, since, fine, output, self._measured)
-        solving = sum(block.solving for block in self.model.blocks)
-        work.add(work.of_run(len(scratch) * WIDTH, (last - first) * fine, rows, solving))
+        work.add(work.of_run(len(scratch) * WIDTH, (last - first) * fine, rows, self.model.solving))
 
     @cached_property
     def _signals(self) -> Array:

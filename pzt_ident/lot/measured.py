@@ -40,12 +40,12 @@ def unlike_others(devices: dict[str, list[Facts]]) -> dict[str, list[str]]:
     for facts in devices.values():
         for fact in facts:
             values.setdefault(fact["what"], []).append(fact["value"])
-    usual = {what: float(np.median(found)) for what, found in values.items() if len(found) >= FEWEST}
+    usual = {what: float(np.median(sizes)) for what, sizes in values.items() if len(sizes) >= FEWEST}
     phrases = {
         device: [phrase(fact, usual[fact["what"]]) for fact in facts if is_far(fact, usual.get(fact["what"]))]
         for device, facts in devices.items()
     }
-    return {device: told for device, told in phrases.items() if told}
+    return {device: far for device, far in phrases.items() if far}
 
 
 def is_far(fact: Facts, usual: float | None) -> bool:
@@ -54,5 +54,5 @@ def is_far(fact: Facts, usual: float | None) -> bool:
 
 def phrase(fact: Facts, usual: float) -> str:
     unit = fact["unit"]
-    own, others = (quantity(value / factor(unit), unit) for value in (fact["value"], usual))
-    return f"{fact['what']} {own}, usually {others}"
+    size, median = (quantity(value / factor(unit), unit) for value in (fact["value"], usual))
+    return f"{fact['what']} {size}, usually {median}"

@@ -158,7 +158,7 @@ class Lot:
     def of_units(self) -> list[str]:
         """A sentence on each of the first devices that were measured unlike the others, and one on how many more."""
         unlike = "was measured unlike the others"
-        lines = [f"{device} {unlike}: {'; '.join(told)}. Are the units right?" for device, told in self.unlike.items()]
+        lines = [f"{device} {unlike}: {'; '.join(far)}. Are the units right?" for device, far in self.unlike.items()]
         more = len(lines) - MOST_TOLD
         return [*lines[:MOST_TOLD], *[f"So were {more} more."] * (more > 0)]
 

@@ -144,8 +144,8 @@ def in_order(keys: Collection[tuple[str, bool]]) -> list[tuple[str, bool]]:
     whatever devices there are, and in which order."""
 
     def is_added(key: tuple[str, bool]) -> bool:
-        own = key[0].removeprefix(IMPROVED)
-        return not key[1] and own != key[0] and (own, False) not in keys
+        name = key[0].removeprefix(IMPROVED)
+        return not key[1] and name != key[0] and (name, False) not in keys
 
     last = [key for key in keys if not key[1] and key[0] in LAST]
     added = sorted((key for key in keys if is_added(key)), key=lambda key: _place(key[0]))

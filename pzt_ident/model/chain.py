@@ -164,6 +164,11 @@ class Chain:
     def oversample(self) -> int:
         return max((block.oversample for block in self.blocks), default=1)
 
+    @property
+    def solving(self) -> float:
+        """Seconds of a step in which its blocks solve equations; see `Block.solving`."""
+        return sum(block.solving for block in self.blocks)
+
     def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
         """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
         if axis not in self.measured and issubclass(block, Coupling | Modes):
