@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import Any
 
 import click
 
 from pzt_ident.atlas.href import href
 from pzt_ident.cli.table import grouped_by_range, table
-from pzt_ident.data.notation import either
+from pzt_ident.data.notation import either, listed
+from pzt_ident.model.block import Place
 from pzt_ident.model.registry import blocks, word_of
 
 Facts = dict[str, Any]
 
+WIDTH = 115
 SAYINGS = {"Leaves much the same trace as": "look_alikes", "To tell": "separate_by", "To do": "remedy"}
 UNITS = """\
 Bounds in units of drive or response are declared in the largest peak-to-peak value of a record to identify:
@@ -27,8 +30,10 @@ def show_word(facts: Facts) -> None:
         click.echo(f"{source}\n")
     if not facts.get("convergent", True):
         click.echo("It approaches an optimum, but does not converge to it.\n")
-    if len(facts.get("forms", ())) > 1:
-        table(("form, in a job", "what it is"), [(row["item"], row["doc"]) for row in facts["forms"]])
+    if len(forms := facts.get("forms", ())) > 1:
+        table(("form, in a job", "what it is"), [(row["item"], row["doc"]) for row in forms])
+    if places := _places(facts):
+        click.echo(f"{places}\n")
     if "settings" in facts:
         table(
             ("setting", "default", "from - to", "unit", "what it is"),
@@ -45,6 +50,23 @@ def show_word(facts: Facts) -> None:
         if text := facts.get(key):
             click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
     click.echo(f"\nPictures and more: `pzt-ident atlas` writes {href(facts['name'])}")
+
+
+def _places(facts: Facts) -> str:
+    """Where a block acts in the chain, in each of its forms; empty of what belongs to the parameters of others."""
+    rows = facts.get("forms") or [{"item": facts["name"], "place": facts.get("place")}]
+    items: dict[str, list[str]] = {}
+    for row in rows:
+        items.setdefault(row["place"] or "", []).append(f"`{row['item']}`" if len(rows) > 1 else "It")
+    items.pop("", None)
+    if not items:
+        return ""
+    acts = [
+        f"{listed(some)} {'acts' if len(some) == 1 else 'act'} in the place {place}" for place, some in items.items()
+    ]
+    order = "In one place blocks act in the order of the job, couplings behind the others."
+    chain = listed([place.name.lower() for place in Place])
+    return fill(f"{', '.join(acts)}; the chain goes by {chain}. {order}", WIDTH)
 
 
 def _show_parameters(facts: Facts) -> None:
@@ -80,7 +102,8 @@ def _meaning(row: Facts) -> str:
     per_record = " Each record has its own." if row["per_record"] else ""
     per_record += " Of every axis but the first." if row["per_later_axis"] else ""
     apart = f" Wide bounds of `{row['adds_to']}` or of the rest of its block hide it: fix what is known."
-    return row["doc"] + fixed + effect + per_record + _with_form(row) + (apart if row["adds_to"] else "")
+    positive = " Above 0." if row["scale"] == "log" else ""
+    return row["doc"] + positive + fixed + effect + per_record + _with_form(row) + (apart if row["adds_to"] else "")
 
 
 def _with_form(row: Facts) -> str:

@@ -116,7 +116,7 @@ class FreeDensity(Bank):
     place = Place.OPERATOR
     density = HomogenizedEnergy.density
     nodes = Setting(
-        22, (4, 128), "Number of coercive fields, evenly spaced from 0 to `reach`."
+        22, (4, 128), "Number of coercive fields, each in the middle of one of as many equal parts of 0 to `reach`."
     )  # with gain and none one group of lanes
     compared_with_drive = ("reach",)
     gain = Parameter("response/drive", (0, 3), HomogenizedEnergy.gain.doc, linear=True)
@@ -127,7 +127,12 @@ class FreeDensity(Bank):
     interaction = HomogenizedEnergy.interaction
     reach = Parameter("drive", (0.05, 1), "Upper limit of the coercive fields.", value=0.5)
     smoothness = Parameter(
-        "1", (1e-9, 1e3), "Weight of the squared second differences of the weights.", scale="log", value=1e-3
+        "1",
+        (1e-9, 1e3),
+        "Weight of the squared second differences of the weights, times the response to a weight, the median of all, "
+        "beside the squared errors.",
+        scale="log",
+        value=1e-3,
     )
     poled, bias = HomogenizedEnergy.poled, HomogenizedEnergy.bias
 

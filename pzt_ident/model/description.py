@@ -116,7 +116,9 @@ def _block(name: str) -> Facts:
     facts: Facts = {"name": name, "kind": kind, "doc": inspect.getdoc(block)}
     if kind == "effects":
         facts |= {"look_alikes": _look_alikes(block)} | {key: getattr(block, key) for key in ("separate_by", "remedy")}
-        facts["forms"] = [{"item": item, "doc": form_headline(item)} for item in blocks.forms(name)]
+        facts["forms"] = [
+            {"item": item, "place": place_of(item), "doc": form_headline(item)} for item in blocks.forms(name)
+        ]
     rows = _parameters(block) + (_parameters_of_effect(word_of(name)) if kind == "effects" else [])
     if issubclass(block, Term):
         return facts | {"parameters": rows}
@@ -125,7 +127,13 @@ def _block(name: str) -> Facts:
     chosen: Facts = {"settings": choices} if choices else {}
     written = f"{{name: {name}, {own}}}" if own else f"model: [{name}, bouc_wen]" if block.lead else ""
     chosen |= {"in_a_job": written} if written else {}
-    return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
+    return facts | {"place": place_of(name), "parameters": rows} | chosen
+
+
+def place_of(name: str) -> str | None:
+    """The place of a block in the chain; None of what belongs to a parameter of others."""
+    place = getattr(blocks[name], "place", None)
+    return None if place is None else place.name.lower()
 
 
 def _look_alikes(block: type[Any]) -> list[str]:

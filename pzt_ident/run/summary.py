@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.evidence import LONG
 from pzt_ident.data.noise import WEAK, noise_floor
 from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
@@ -120,7 +121,7 @@ def _weak_floors(axes: list[Facts]) -> Iterator[str]:
         if axis.get("noise_floor_source") == WEAK:
             yield (
                 f"{axis['name']}: the noise floor is taken while the stage moves, where slow noise passes for signal, "
-                "fast signal for noise: record a rest of a second or one drive twice to know it"
+                f"fast signal for noise: record a rest of {LONG} samples or one drive twice to know it"
             )
 
 

@@ -295,6 +295,21 @@ class TestWords:
             shown = call("show", word).stdout
             assert all(f"\n{field.name} " in shown for field in fields(optimizers[word]))
 
+    def test_every_word_says_where_it_acts_in_the_chain(self):
+        shown = {word: " ".join(call("show", word).stdout.split()) for word in blocks.words()}
+        for word, text in shown.items():
+            items = blocks.forms(word) if blocks.is_effect(word) else [word]
+            places = [getattr(blocks[item], "place", None) for item in items]
+            assert all(f"the place {place.name.lower()}" in text for place in places if place is not None)
+            assert ("the chain goes by delay, slew" in text) is any(place is not None for place in places)
+
+    def test_a_parameter_that_has_to_be_above_zero_says_so(self):
+        for word in blocks.words():
+            shown = call("show", word).stdout
+            for name, declared in blocks[word].parameters().items():
+                rows = [row for row in shown.splitlines() if row.startswith(f"{word}.{name} ")]
+                assert all((" Above 0." in row) is (declared.scale == "log") for row in rows if declared.doc in row)
+
     def test_it_says_with_which_forms_of_an_effect_a_parameter_is_searched_for(self):
         shown = call("show", "bouc_wen").stdout
         assert "With `asymmetry` in its first form only." in shown and "With `asymmetry.constant` only." in shown
@@ -319,7 +334,7 @@ class TestWords:
             "Fixed at 0.001 unless the job gives bounds or another value. With `density: free` or `density: shared`"
             in shown
         )
-        assert "Median of the coercive fields. With `density: lognormal` only." in shown
+        assert "Median of the coercive fields. Above 0. With `density: lognormal` only." in shown
         assert "\nhomogenized_energy.weight_1 to weight_22 " in shown and ".weight_2 " not in shown
 
     def test_block(self):
