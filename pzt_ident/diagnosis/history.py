@@ -36,8 +36,9 @@ PROMISING = 0.1  # of the misfit: what is removed at once, with all parameters a
 def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case whose model follows what was before the records, and the fit as given in it, where that removes most of
     the misfit or more than any effect, alone or beside one of the best of these; None elsewhere, and where an effect
-    alone leads to the noise as well, of no more parameters if both do, or another one beside it promises nearly all
-    that it leaves; beside one that explains nearly all none that stays far above it. diagnosis: of the fit."""
+    alone leads to the noise as well, of no more parameters if both do, or another one beside it, or beside the one that
+    it shows behind, promises nearly all that is left; beside one that explains nearly all none that stays far above it.
+    diagnosis: of the fit."""
     if has_history(first) or not has_operator(case):
         return None
     effects = sorted((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total)
@@ -55,9 +56,11 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
             return None
         given_up = best[1].identify > rival
         return (best[0], refit(best[0], best[1], first.effects, {})) if given_up else best
-    level = [fit for fit in effects if not (accounted and is_far_behind(case, fit, effects[0]))]
-    behind = (history_behind(case, first, fit, rival) for fit in level[:TRIED])
-    return next((found for found in behind if found), None)
+    for fit in [fit for fit in effects if not (accounted and is_far_behind(case, fit, effects[0]))][:TRIED]:
+        behind = history_behind(case, first, fit, rival)
+        if behind and not lead_on(case, first, [fit]):
+            return behind
+    return None
 
 
 def takes_more(case: Case, first: Fit, fit: Fit, aged: tuple[Case, Fit] | None) -> bool:

@@ -158,6 +158,21 @@ def test_what_was_before_is_not_followed_where_an_effect_beside_the_best_promise
     assert with_history(case, first, diagnosis) is None
 
 
+@pytest.mark.parametrize("promised", [False, True])
+def test_nor_behind_an_effect_beside_which_another_one_promises_nearly_all(monkeypatch, promised):
+    """A Duhem stage with a lag and a memory: beside the lag what was before left 4.2 noise floors, and the memory,
+    with 0.99 of the misfit by its score, 1.4."""
+    first, effect = made_fits.fit(17.2, 126.7), made_fits.fit(14.0, 20.3, ["amplifier_lag"])
+    before = made_fits.CASE, made_fits.fit(10.2, 119.9)
+    monkeypatch.setattr(history, "has_history", lambda fit: False)
+    monkeypatch.setattr(history, "has_operator", lambda case: True)
+    monkeypatch.setattr(history, "beside", lambda *arguments: None)
+    monkeypatch.setattr(history, "history_behind", lambda case, first, fit, rival: before)
+    monkeypatch.setattr(history, "promises_most", lambda case, first, fit, least: promised and fit is effect)
+    diagnosis = Diagnosis("missing", "", first, [], [], [Candidate(None, effect)])
+    assert with_history(made_fits.CASE, first, diagnosis) == (None if promised else before)
+
+
 def test_behind_effects_what_was_before_has_what_would_be_enough_as_a_rival(asked):
     case = begun_in_motion()
     first = first_fit(case, 0)
