@@ -14,7 +14,7 @@ class BoucWen(Operator):
 
     Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), a drive. On a monotone step of length s
     the state along the motion, q, is q(s) = q0 exp(-r s) + (1 - exp(-r s)) / r, with r = beta - gamma where q < 0 and
-    r = beta + gamma where q > 0.
+    r = beta + gamma where q > 0. A record begins without a memory: h = 0 at the first drive.
 
     Effects, each without influence at zero:
     dh/dt = alpha d (1 + rate L) du/dt + (lean + asymmetry u + skew_2 u^2 + skew_3 u^3) alpha d |du/dt| - ...

@@ -19,10 +19,11 @@ class DomainWall(Bank):
     dP_irr/dE = g / (k - alpha g), g = max(sign(dE) (P_an - P_irr), 0).
 
     Smith & Salapaka, Model Development for the Positioning Mechanisms in an Atomic Force Microscope, eqs. 3 to 8, with
-    u for E and P relative to P_s. P is solved for at each stage of a fourth-order Runge-Kutta step in E, from an
-    unpolarized state at zero field. Where g reaches k / alpha, which violates eq. 9, the walls run away: they then
-    jump, at most onto the anhysteretic curve, and the result reports it. A candidate with c alpha P_s >= a, for which
-    P has no unique solution, fails. As in all models of this kind minor loops do not close, unless they are biased.
+    u for E and P relative to P_s. P is solved for at each stage of a fourth-order Runge-Kutta step in E. A record
+    begins unpolarized at zero field, from where it goes to the first drive. Where g reaches k / alpha, which violates
+    eq. 9, the walls run away: they then jump, at most onto the anhysteretic curve, and the result reports it. A
+    candidate with c alpha P_s >= a, for which P has no unique solution, fails. As in all models of this kind minor
+    loops do not close, unless they are biased.
 
     What an actuator does beside its hysteresis adds b P_s / a times what it makes of the drive, the slope of P_an
     without a mean field.

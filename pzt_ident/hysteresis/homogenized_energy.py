@@ -51,7 +51,8 @@ class HomogenizedEnergy(Bank):
     tail, where those of equal probability are far apart, they are closer. The polarization is computed as the field
     eta P.
 
-    E is the drive minus the bias. The history before the first sample is virgin, then `poled`, then the first sample.
+    E is the drive minus the bias. A record begins virgin at zero field, from where it goes to `poled`, then to the
+    first drive.
     Responses of different kinds, such as P itself and a displacement, may share all parameters but gain and quadratic.
     Ahead of what is nonlinear in the displacement y is counted from that at rest, in which a flexure is not bent.
     """

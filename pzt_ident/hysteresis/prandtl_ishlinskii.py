@@ -15,9 +15,9 @@ STANDING = 1e-13  # V/s, a rate of which no power counts
 class PrandtlIshlinskii(Bank):
     """y = w0 u + sum_i w_i F_i[u], F_i the play of half-width r_i = reach i / 8: p <- max(u - r, min(u + r, p)).
 
-    Krasnosel'skii & Pokrovskii (1989), Systems with Hysteresis; Kuhnen (2003), Eur. J. Control 9, 407. The initial
-    state is virgin: each play is at zero if the first input is within its half-width. Linear in the weights. Minor
-    loops close.
+    Krasnosel'skii & Pokrovskii (1989), Systems with Hysteresis; Kuhnen (2003), Eur. J. Control 9, 407. A record begins
+    as if its plays came from zero to the first drive without a reversal: each is at zero if that is within its
+    half-width. Linear in the weights. Minor loops close.
 
     Effects, each without influence at zero: r_i <- r_i (1 + rate L), L as in Bouc-Wen; counted from rest where it has
     an onset or is a power, or r_i + rate reach (|du/dt| / (100 V/s))^order.

@@ -27,7 +27,8 @@ class ThermalHomogenizedEnergy(Relays):
     inflection point, and its mass is left out. The spacing of the interaction fields is an eighth of their standard
     deviation. Rest, where y is counted from it, is that without thermal activation. For loops and for larger steps its
     error is small (4 % of the creep); creep after a step of a thirtieth of the standard deviation is off by about 8 %,
-    after a hundredth by 20 to 30 %.
+    after a hundredth by 20 to 30 %. A record begins virgin at zero field, from where it goes to `poled`, then to the
+    first drive, without thermal activation.
     """
 
     place = Place.OPERATOR

@@ -11,7 +11,7 @@ class BoucWenOscillator(Block):
 
     Noel & Schoukens (2016), Hysteretic benchmark with a dynamic nonlinearity, with nu = 1; beta and gamma here
     are the products beta gamma and beta delta of the benchmark. Fourth-order Runge-Kutta with `oversample` steps per
-    sample of the interpolated drive.
+    sample of the interpolated drive. A record begins at y = 0, where the first drive then pushes.
     """
 
     place = Place.MECHANICS

@@ -303,6 +303,11 @@ class TestWords:
             assert all(f"the place {place.name.lower()}" in text for place in places if place is not None)
             assert ("the chain goes by delay, slew" in text) is any(place is not None for place in places)
 
+    def test_an_operator_says_where_its_memory_begins(self):
+        operators = [word for word in blocks.words() if blocks.kind_of(word) == "hysteresis"]
+        for word in [*operators, "bouc_wen_oscillator"]:
+            assert "A record begins" in " ".join(call("show", word).stdout.split())
+
     def test_a_parameter_that_has_to_be_above_zero_says_so(self):
         for word in blocks.words():
             shown = call("show", word).stdout
