@@ -9,7 +9,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import Staircase
-from pzt_ident.diagnosis.criteria import adequate, removed_rms
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
@@ -25,6 +25,7 @@ from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import blocks, phrase_of
 
+AHEAD = 0.2  # of the budget, after which no fault is fitted from elsewhere ahead of effects
 LIKELY = 0.3  # of the misfit: a fault that scores less is not all that is missing, and is not fitted
 BACK = "back to the model as given"  # the step that takes out what a fault of the set-up does better
 
@@ -50,22 +51,26 @@ class Fault:
         )
 
 
-def faults_of(case: Case, first: Fit) -> Iterator[tuple[str, Fit]]:
-    """The faults that score, each with the fit of the model as given with it, from elsewhere too where that is not at
-    the noise."""
+def faults_of(case: Case, first: Fit, share: float = WHOLE) -> Iterator[tuple[str, Fit]]:
+    """The faults that score, each with the fit of the model as given with it, the best first, from elsewhere too where
+    that explains most and is not at the noise, as long as less than a share of the budget is spent."""
+    fits = dict[str, Fit]()
     for word in applicable(case, first.effects, in_setup=True):
         if not case.budget.allows("faults of the set-up", WHOLE):
-            return
+            break
         score = scorer_of(case, first).score(word)
         if score.explained > LIKELY:
-            fit = refit(case, first, (*first.effects, word), score.guess)
-            yield word, fit if adequate(case, first, fit) else restart(case, fit)
+            fits[word] = refit(case, first, (*first.effects, word), score.guess)
+    for word in sorted(fits, key=lambda word: fits[word].total):
+        fit = fits[word]
+        at_side = share_explained(first.total, fit.total, case.floor) >= DECISIVE and not adequate(case, first, fit)
+        yield word, restart(case, fit) if at_side and not case.budget.spent(share) else fit
 
 
-def fault_instead(case: Case, first: Fit) -> Staircase | None:
+def fault_instead(case: Case, first: Fit, share: float = WHOLE) -> Staircase | None:
     """The staircase of the model as given where a fault of the set-up alone leads to the noise, and no effect stands
-    beside it."""
-    at_noise = [(word, fit) for word, fit in faults_of(case, first) if adequate(case, first, fit)]
+    beside it. share: as of `faults_of`."""
+    at_noise = [(word, fit) for word, fit in faults_of(case, first, share) if adequate(case, first, fit)]
     if not at_noise:
         return None
     word, fit = simplest(case, at_noise)

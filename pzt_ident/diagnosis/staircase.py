@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
 from pzt_ident.diagnosis.drive_shape import better_as_usual, has_other, other_behind, way_of, with_other_drives
-from pzt_ident.diagnosis.faults import fault_instead
+from pzt_ident.diagnosis.faults import AHEAD, fault_instead
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
@@ -53,7 +53,7 @@ def improve_as_usual(case: Case, first: Fit, on_step: StepListener) -> Staircase
     """The same, with drives as they are unless the model with the best effect says otherwise."""
     good = adequate(case, first, first)
     wide = not good and needs_wider_bounds(case, first)
-    if mended := None if good or wide else fault_instead(case, first):
+    if mended := None if good or wide else fault_instead(case, first, AHEAD):
         for step in mended.steps:
             on_step(step)
         return mended
