@@ -126,7 +126,7 @@ def test_columns_that_were_taken_as_words_are_named_with_the_reason(identified, 
         device["columns"] |= {"bench": "4 B" if place == 2 else str(place), "serial": place or None}
     write_sealed(out / "devices.json", listed)
     text = unescape(write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8"))
-    (said,) = re.findall("<p.*>(.*): the column is taken as words", text)
+    (said,) = re.findall("<p[^>]*>([^<]*): the column is taken as words", text)
     assert said == f"'4 B' ({listed['devices'][2]['device']}) under 'bench' is no number, as most others are"
     assert "<td>1</td>" in text and "<td>1.000</td>" not in text
 
