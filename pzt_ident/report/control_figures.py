@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pzt_ident.report.decimation import decimate
 from pzt_ident.report.figures import Plate, render
 from pzt_ident.report.style import (
     DASHES,
@@ -16,7 +17,6 @@ from pzt_ident.report.style import (
     PALETTE,
     QUIET,
     Frame,
-    decimate,
     heading,
     key,
     label,

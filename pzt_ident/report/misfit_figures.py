@@ -10,6 +10,7 @@ import numpy as np
 
 from pzt_ident.data.notation import percent, unit
 from pzt_ident.data.signals import Array, Trace
+from pzt_ident.report.decimation import decimate, decimate_curve
 from pzt_ident.report.residual_figures import colour_bar
 from pzt_ident.report.room import fit
 from pzt_ident.report.sentences import USE_NAMES
@@ -20,8 +21,6 @@ from pzt_ident.report.style import (
     QUIET,
     SHADE,
     Frame,
-    decimate,
-    decimate_curve,
     heading,
     key,
     label,

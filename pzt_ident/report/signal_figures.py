@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pzt_ident.data.signals import Array, Trace
+from pzt_ident.report.decimation import decimate, decimate_curve
 from pzt_ident.report.sentences import USE_NAMES
 from pzt_ident.report.style import (
     COLUMN,
@@ -17,8 +18,6 @@ from pzt_ident.report.style import (
     NOISE,
     SHADE,
     Frame,
-    decimate,
-    decimate_curve,
     heading,
     key,
     label,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.notation import unit
 from pzt_ident.data.signals import Array, Trace
-from pzt_ident.report.style import decimate
+from pzt_ident.report.decimation import decimate
 
 LEVELS = 65535  # of a 16-bit number
 

@@ -17,7 +17,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.data.stretches import rests
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
-from pzt_ident.report.style import decimate
+from pzt_ident.report.decimation import decimate
 from pzt_ident.workbench.columns import columns_of, hertz, values_of
 from pzt_ident.workbench.wording import in_page_words
 

@@ -17,8 +17,8 @@ from pzt_ident.diagnosis.ties import differ
 from pzt_ident.errors import InputError
 from pzt_ident.model.description import description_of, summary, words
 from pzt_ident.model.registry import blocks, phrase_of, word_of
+from pzt_ident.report.decimation import decimate
 from pzt_ident.report.sentences import printed_reason
-from pzt_ident.report.style import decimate
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.run.results import read_results

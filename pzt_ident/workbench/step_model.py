@@ -17,7 +17,7 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.chain import Entry
-from pzt_ident.report.style import decimate
+from pzt_ident.report.decimation import decimate
 from pzt_ident.run.improve import case_of
 from pzt_ident.run.start import read_start, theta_of
 from pzt_ident.run.statement import Statement
