@@ -54,19 +54,17 @@ def show_word(facts: Facts) -> None:
 
 def _places(facts: Facts) -> str:
     """Where a block acts in the chain, in each of its forms; empty of what belongs to the parameters of others."""
-    rows = facts.get("forms") or [{"item": facts["name"], "place": facts.get("place")}]
-    items: dict[str, list[str]] = {}
-    for row in rows:
-        items.setdefault(row["place"] or "", []).append(f"`{row['item']}`" if len(rows) > 1 else "It")
-    items.pop("", None)
-    if not items:
+    forms = facts.get("forms") or [{"item": facts["name"], "place": facts.get("place")}]
+    acts = []
+    for place in [place.name.lower() for place in Place]:
+        items = [f"`{form['item']}`" for form in forms if form["place"] == place]
+        if items:
+            acts.append(f"{listed(items)} {'acts' if len(items) == 1 else 'act'} at {place}")
+    if not acts:
         return ""
-    acts = [
-        f"{listed(some)} {'acts' if len(some) == 1 else 'act'} in the place {place}" for place, some in items.items()
-    ]
-    order = "In one place blocks act in the order of the job, couplings behind the others."
     chain = listed([place.name.lower() for place in Place])
-    return fill(f"{', '.join(acts)}; the chain goes by {chain}. {order}", WIDTH)
+    order = "At one place blocks act in the order of the job, couplings behind the others."
+    return fill(f"{'; '.join(acts)}. The chain goes from the drive through {chain} to the reading. {order}", WIDTH)
 
 
 def _show_parameters(facts: Facts) -> None:

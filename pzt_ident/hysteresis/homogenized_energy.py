@@ -130,8 +130,8 @@ class FreeDensity(Bank):
     smoothness = Parameter(
         "1",
         (1e-9, 1e3),
-        "Weight of the squared second differences of the weights, times the response to a weight, the median of all, "
-        "beside the squared errors.",
+        "How much the squared second differences of the weights count beside the squared errors, each weight as the "
+        "response that it makes in the median.",
         scale="log",
         value=1e-3,
     )

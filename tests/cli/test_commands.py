@@ -300,8 +300,10 @@ class TestWords:
         for word, text in shown.items():
             items = blocks.forms(word) if blocks.is_effect(word) else [word]
             places = [getattr(blocks[item], "place", None) for item in items]
-            assert all(f"the place {place.name.lower()}" in text for place in places if place is not None)
-            assert ("the chain goes by delay, slew" in text) is any(place is not None for place in places)
+            assert all(f"at {place.name.lower()}" in text for place in places if place is not None)
+            assert ("The chain goes from the drive through delay, slew" in text) is any(
+                place is not None for place in places
+            )
 
     def test_an_operator_says_where_its_memory_begins(self):
         operators = [word for word in blocks.words() if blocks.kind_of(word) == "hysteresis"]
