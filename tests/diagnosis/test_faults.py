@@ -160,7 +160,7 @@ def test_a_fault_is_fitted_where_it_may_be_most_of_what_is_missing(monkeypatch, 
 def test_faults_are_fitted_from_elsewhere_where_they_explain_most_and_the_best_first(
     monkeypatch, left, share, elsewhere
 ):
-    """RMSE in noise floors, of 12 as given. Four faults that were no account had taken half of a budget."""
+    """RMSE in noise floors, of 12 as given. Four faults that were no account had taken nearly half of a budget."""
     fits, restarted = {word: fit(value, value, [word]) for word, value in left.items()}, []
     monkeypatch.setattr(faults, "applicable", lambda case, effects, in_setup: [*left])
     monkeypatch.setattr(faults, "scorer_of", lambda case, fit: SimpleNamespace(score=lambda word: Score(word, 1.0)))
