@@ -31,7 +31,8 @@ Array = NDArray[np.float64]
 
 class Operation(NamedTuple):
     """One step of a program: a `block` acts on a tile, with its numbers from a row of the scratch on; or the drive of
-    an axis fills its tile; or the signal is kept as the operator's prompt input, or as the force on the mechanics."""
+    an axis fills its tile; or the signal is kept as the operator's prompt input, or as the force on the mechanics.
+    idle: how many of its rows are not counted as work."""
 
     action: Literal["block", "fill", "keep_prompt", "keep_force"]
     axis: int
@@ -40,6 +41,7 @@ class Operation(NamedTuple):
     block: type[Block] | None = None
     variant: Any = None
     row: int = 0
+    idle: int = 0
 
 
 class Program:
@@ -175,9 +177,10 @@ class Program:
 
         form = self.model.form_of(block)
         tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.has_readout else 0)
-        self.operations.append(Operation("block", axis, tile, block.place, block, variant, self.rows))
+        layout = layout_of(form, variant)  # type: ignore[arg-type]
+        self.operations.append(Operation("block", axis, tile, block.place, block, variant, self.rows, layout.idle))
         words = (*form.arguments(), *(argument_names(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
-        self._give(block, layout_of(form, variant), words, self._places(block, axis))  # type: ignore[arg-type]
+        self._give(block, layout, words, self._places(block, axis))
 
     def _give(self, block: type[Block], layout: Any, words: tuple[str, ...], places: list[tuple[int, int]]) -> None:
         """Take rows of the scratch for a block, with the sources of its arguments."""

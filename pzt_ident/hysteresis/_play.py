@@ -13,6 +13,18 @@ def play(p, u, half):
     return max(u - half, min(u + half, p))
 
 
+def play_rides(p, first, last, back, half):
+    """Whether p is on one edge of `play` from the first input on, however far it goes to the last and, on the way, back
+    by `back` at most: it follows the farthest input so far."""
+    on_edge = p <= first - half if last >= first else p >= first + half
+    return on_edge & (back <= 2 * half)
+
+
+def play_limits(p, low, high, half):
+    """Between which values p stays for inputs between low and high."""
+    return min(p, low + half), max(p, high - half)
+
+
 def relaxation_coefficients(width, dt):
     """Fluctuation field f, f log(dt / 1 s) and 1 / f, the last arguments of `relaxed_play`; f is 1e-30 at least."""
     width = width if width > 1e-30 else 1e-30

@@ -5,7 +5,14 @@ from math import exp, sqrt
 from statistics import NormalDist
 
 from pzt_ident.errors import InputError
-from pzt_ident.hysteresis._play import play, relaxation_coefficients, relaxed_play, relaxed_rests
+from pzt_ident.hysteresis._play import (
+    play,
+    play_limits,
+    play_rides,
+    relaxation_coefficients,
+    relaxed_play,
+    relaxed_rests,
+)
 from pzt_ident.model.block import Bank, Place, erf
 from pzt_ident.model.parameter import Form, Parameter, Setting
 from pzt_ident.model.registry import blocks
@@ -101,6 +108,18 @@ class HomogenizedEnergy(Bank):
     def rests(p, low, high, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
         return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
 
+    def rides(p, first, last, back, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
+        return play_rides(p, (first - bias) * per_width, (last - bias) * per_width, back * per_width, half)
+
+    def limits(p, low, high, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
+        return play_limits(p, (low - bias) * per_width, (high - bias) * per_width, half)
+
+    def read(p, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
+        return share * erf(p)
+
+    def bend(gain, remanence, quadratic, bias, zero, per_width, half, before, share):
+        return 1 / per_width
+
     def output(u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, share):
         field = u - bias + remanence * (total - 1)
         return (gain + quadratic * field) * field - zero
@@ -160,6 +179,18 @@ class FreeDensity(Bank):
     def rests(p, low, high, gain, weight, bias, below, zero, per_width, half, before):
         return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
 
+    def rides(p, first, last, back, gain, weight, bias, below, zero, per_width, half, before):
+        return play_rides(p, (first - bias) * per_width, (last - bias) * per_width, back * per_width, half)
+
+    def limits(p, low, high, gain, weight, bias, below, zero, per_width, half, before):
+        return play_limits(p, (low - bias) * per_width, (high - bias) * per_width, half)
+
+    def read(p, gain, weight, bias, below, zero, per_width, half, before):
+        return weight * (erf(p) - zero)
+
+    def bend(gain, weight, bias, below, zero, per_width, half, before):
+        return 1 / per_width
+
     def output(u, total, gain, weight, bias, below, zero, per_width, half, before):
         return gain * u - below + total
 
@@ -187,6 +218,8 @@ class SharedDensity(FreeDensity):
 class Relaxing(HomogenizedEnergy):
     """The model with thermally activated plays (`relaxed_play`). The coercive fields are those at a field rate of one
     fluctuation field per second; in a hold the polarization goes on with the logarithm of time."""
+
+    rides = limits = read = bend = None
 
     def prepare(
         gain, remanence, coercive, spread, interaction, quadratic, poled, bias, fluctuation, branch, dt, from_rest

@@ -241,6 +241,13 @@ class Bank(Block):
     rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch. Optional; it
     saves the steps of a branch that holds still over a tile in every lane.
 
+    A branch of one state with a response that is a smooth function of it is read by series, in a third of the time:
+    read(state, *coefficients) -> its response, as smooth as erf(state).
+    limits(state, low, high, *coefficients) -> (least, most): between which states it stays for inputs between these.
+    rides(state, first, last, back, *coefficients) -> whether it depends alone on how far the input has come, which goes
+    from first to last, and on the way back by `back` at most.
+    bend(*coefficients) -> the change of the input that changes the state by one.
+
     What needs NumPy is computed once per distinct candidate: solve(values) -> one array (branches,) for each word of
     `solved`, which `prepare` may ask for; values.word is a parameter (an array if counted), a setting or dt. Where a
     job chooses the size, count(*settings) -> branches; it raises InputError for settings that exclude each other.

@@ -372,6 +372,41 @@ SUMMED = [
 ]
 
 
+@pytest.mark.parametrize("item", [item for item in [*IN_CHAIN, *FORMS] if getattr(block_of(item), "read", None)])
+@quick
+@given(drive=drives, seed=seeds, branch=st.integers(0, 3))
+def test_what_a_smooth_branch_says_of_itself_is_what_it_does(item, drive, seed, branch):
+    """From any state that an input has led to, to all inputs that follow."""
+    block, chain, rng = block_of(item), model(item), np.random.default_rng(seed)
+    values = plain.parameters(chain, chain.blocks[0], record(drive), 0, 0, candidates(chain, SPAN, 1, seed)[0])
+    numbers = plain.asking(block.prepare, values, branch)
+    split = rng.integers(1, drive.size) if drive.size > 1 else 0
+    (state,) = block.start(drive[0], *numbers)
+    for u in drive[:split]:
+        state, _ = block.step(state, u, *numbers)
+    ahead, rest = drive[max(split - 1, 0)], drive[split:]
+    states, responses, began = [], [], state
+    for u in rest:
+        state, y = block.step(state, u, *numbers)
+        states.append(state)
+        responses.append(y)
+    if not states:
+        return
+    low, high = min(ahead, *rest), max(ahead, *rest)
+    least, most = block.limits(began, low, high, *numbers)
+    close = 1e-12 * (1 + abs(np.array(states)).max())
+    assert least - close <= min(states) and max(states) <= most + close
+    assert (most - least) <= (high - low) / block.bend(*numbers) + close
+    assert [block.read(each, *numbers) for each in states] == pytest.approx(responses, rel=1e-12)
+    if block.rests(began, low, high, *numbers):
+        assert states == pytest.approx([began] * len(states))
+    sign = 1 if max(rest) - rest[0] >= rest[0] - min(rest) else -1
+    reached = sign * np.maximum.accumulate(sign * np.array(rest))
+    if block.rides(began, rest[0], reached[-1], np.abs(reached - rest).max(), *numbers):
+        alone = [block.step(began, u, *numbers)[0] for u in reached]
+        assert states == pytest.approx(alone, abs=close)
+
+
 @pytest.mark.parametrize(("word", "part", "whole"), SUMMED)
 def test_what_adds_to_another_parameter_is_one_with_it(word, part, whole):
     """A payload is a larger moving mass."""

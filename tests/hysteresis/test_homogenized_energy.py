@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from scipy.stats import norm
 
 import smith
+from pzt_ident.engine.simulator import simulate
 from pzt_ident.hysteresis.homogenized_energy import NODES, PLACES, SHARES
-from rig import path, response
+from rig import model, path, record, response
 from twins import homogenized_energy_twin as twin
 
 levels = st.lists(st.floats(-8000, 12000), min_size=2, max_size=12)
@@ -38,6 +39,22 @@ def test_plays_in_a_loop(levels, points, poled):
         expected = twin.homogenized_energy(field, **SHAPE | known | {"poled": poled})
         found = displacement(field, poled=poled, **known)
         np.testing.assert_allclose(found, expected, rtol=0, atol=2e-14 * smith.REMANENCE)
+
+
+@given(st.integers(0, 1000), st.integers(2, 300), st.sampled_from([0.0, 1e-4, 3e-2]), st.floats(-2.5, 1))
+@quick
+def test_plays_of_any_candidate_on_any_drive(seed, points, noise, decades):
+    """Series and single steps, of candidates beside each other that rest, ride and turn at different times."""
+    rng = np.random.default_rng(seed)
+    field = path(*rng.uniform(-8000, 12000, 5), points=points)
+    field += noise * 10000 * rng.normal(size=field.size)
+    known = SHAPE | {"interaction": 10000 * 10**decades}
+    each = [known | {"coercive": coercive} for coercive in 1500 * np.exp(rng.normal(size=3))]
+    chain = model("homogenized_energy")
+    theta = np.array([[shape[name.partition(".")[2]] for name in chain.names] for shape in each])
+    expected = [twin.homogenized_energy(field, **shape) for shape in each]
+    found = simulate(chain, record(field), theta)[:, 0]
+    np.testing.assert_allclose(found, expected, rtol=0, atol=3e-14 * smith.REMANENCE)
 
 
 @given(st.integers(0, 1000), st.sampled_from([20, 200, 2000]), st.sampled_from([0.0, 4000.0, -1e6]))
@@ -149,7 +166,7 @@ def test_virgin_state_is_unpolarized_and_odd():
     field = path(0, 8000, -2000, 5000)
     rise = displacement(field, poled=0.0)
     fall = displacement(-field, poled=0.0)
-    assert rise[0] == fall[0] == pytest.approx(-smith.REMANENCE)
+    assert [rise[0], fall[0]] == pytest.approx([-smith.REMANENCE] * 2, rel=1e-14)
     np.testing.assert_allclose(fall + smith.REMANENCE, -(rise + smith.REMANENCE), rtol=0, atol=1e-18)
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
-    *("prepare", "start", "step", "output", "rests"),
+    *("prepare", "start", "step", "output", "rests", "rides", "limits", "read", "bend"),
     *("travel", "reach", "terms", "lift", "fade", "quadrant"),
     *("field", "coercive_field", "mass", "leave", "basis"),
 )
@@ -49,7 +49,7 @@ class Layout(NamedTuple):
     """Numbers of rows, of WIDTH numbers each, in a block's scratch: states of all copies (branches, or pairs of axes),
     then coefficients of all, coefficients of the terms, arguments of `prepare` of all (`given`), arguments of `terms`,
     and work space. An operator's coefficients are (shared, along, against), those of relays (shape, energy, shared):
-    `first` and `second` are the sizes of the first two of these groups."""
+    `first` and `second` are the sizes of the first two of these groups. smooth: branches are read by series."""
 
     states: int
     coefficients: int
@@ -60,6 +60,12 @@ class Layout(NamedTuple):
     second: int
     terms: int
     given_terms: int
+    smooth: bool = False
+
+    @property
+    def idle(self) -> int:
+        """Rows that are not counted as work: branches that are read by series take a third of the time of others."""
+        return 2 * self.copies * (self.states + self.coefficients + self.given) // 3 if self.smooth else 0
 
     @property
     def first_given(self) -> int:
@@ -95,7 +101,7 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     template = template_of(block, variant)
     layout = layout_of(block, variant)  # type: ignore[arg-type]
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    sources = [text, kernel.VERSION, str(layout), str(variant), *kernel.sources("jit", "elementary")]
+    sources = [text, kernel.VERSION, str(layout), str(variant), *kernel.sources("jit", "elementary", "series")]
     name = native.name_of(f"{block.__name__.lower()}_{template}", *sources, *author_sources(block))
 
     def tile() -> Any:
@@ -110,6 +116,8 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
 def template_of(block: type[Block], variant: Variant) -> str:
     if issubclass(block, Operator):
         return "driven_operator" if variant.driven else "operator"
+    if has(block, "read") and not variant.single:
+        return "smooth_bank"
     templates = {
         Addition: "addition",
         Coupling: "coupling",
@@ -121,9 +129,16 @@ def template_of(block: type[Block], variant: Variant) -> str:
     return next((name for kind, name in templates.items() if issubclass(block, kind)), "plain")
 
 
-def has_rests(block: type[Block]) -> bool:
-    """Whether the block is a bank with a function `rests`."""
-    return issubclass(block, Bank) and getattr(block, "rests", None) is not None
+def has(block: type[Block], word: str) -> bool:
+    """Whether the block is a bank with an optional function."""
+    return issubclass(block, Bank) and getattr(block, word, None) is not None
+
+
+def bank_work(block: type[Bank], smooth: bool) -> int:
+    """Rows of work space, as bank.jinja, or smooth_bank.jinja, lays it out."""
+    from pzt_ident.engine.kernel import SERIES
+
+    return 14 + 6 * max(SERIES) if smooth else 3 if has(block, "rests") else 0
 
 
 def relays_work(block: type[Relays]) -> int:
@@ -142,15 +157,15 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
     ungrouped = groups.get("coefficients", ())
     parts = [len(groups[name]) for name in names] if operator or relays else [0, 0, len(ungrouped)]
     states = len(groups.get("states", ()))
-    axes = variant.axes
+    axes, smooth = variant.axes, template_of(block, variant) == "smooth_bank"
     copies = (
         block.branches if issubclass(block, Bank | Modes) else axes * (axes - 1) if issubclass(block, Coupling) else 1
     )
     work = (
         (4 if variant.driven else 3)
         if operator
-        else 3
-        if has_rests(block)
+        else bank_work(block, smooth)
+        if issubclass(block, Bank)
         else relays_work(block)
         if issubclass(block, Relays)
         else 0
@@ -159,7 +174,7 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
     terms = len(groups["terms"]) if variant.terms else 0
     given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
     given += len(TIME) if issubclass(block, Addition) else 0
-    return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(given_terms))
+    return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(given_terms), smooth)
 
 
 def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> str:
@@ -178,7 +193,8 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> s
         B=[f"b{i}" for i in range(block.amounts())] if issubclass(block, Addition) else [],
         GT=layout.given_terms,
         readout=variant.readout,
-        rests=has_rests(block),
+        rests=has(block, "rests"),
+        SERIES=kernel.SERIES,
         quadrant=getattr(block, "quadrant", None) is not None,
         block=block,
         rows=layout.rows,

@@ -26,6 +26,10 @@ KINDS = {
     | {
         "output": "u, total, *coefficients -> y",
         "rests?": "*states, low, high, *coefficients -> still",
+        "rides?": "state, first, last, back, *coefficients -> along",
+        "limits?": "state, low, high, *coefficients -> least, most",
+        "read?": "state, *coefficients -> y",
+        "bend?": "*coefficients -> width",
         "threshold?": "branches -> drive",
         "count?": "settings -> branches",
         "solve?": "values",
@@ -55,6 +59,7 @@ called by the check."""
 ANY = {"refuse?": "least, most"}
 ASKED_BY_NAME = ("given", "own parameters", "branches", "settings")
 BRANCHED = ("bank", "modes")
+SMOOTH = ("rests", "rides", "limits", "read", "bend")  # a bank with `read` has all of them
 
 
 class Signature(NamedTuple):
@@ -93,6 +98,8 @@ def _required(block: Any, word: str) -> bool:
     """Whether another declaration of the block makes an optional function necessary."""
     if word == "solve":
         return bool(block.solved)
+    if word in SMOOTH:
+        return getattr(block, "read", None) is not None
     effects = {effect for item in parameters(block).values() for effect in item.effects} - block.forms.keys()
     terms = ("terms", "lift", "fade")
     return word in terms and (bool(effects) or any(getattr(block, term, None) is not None for term in terms))
