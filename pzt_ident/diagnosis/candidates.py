@@ -24,6 +24,7 @@ from pzt_ident.diagnosis.forms import (
     Candidate,
     drives_onto_bounds,
     from_each_other,
+    least_score,
     likely_forms,
     refit_anew,
     refit_likely_forms,
@@ -95,6 +96,13 @@ def likeliest(case: Case, first: Fit) -> Fit | None:
     return refit_from(case, first, (*first.effects, best.effect), best.guesses)
 
 
+def listed(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The effects to be refitted, of all that were scored: see `short_list`."""
+    least = least_score(case, first, before)
+    ranked = sorted(candidates, key=lambda item: -item.rank)
+    return short_list([item for item in ranked if item.score.explained > least])
+
+
 def short_list(promising: list[Candidate]) -> list[Candidate]:
     """The effects to be refitted, of those that score, the best first: as many as that, by `simpler_first`, behind the
     first of them the disturbances, and behind these every other disturbance."""
@@ -127,14 +135,29 @@ def _follows_anything(effect: str) -> bool:
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """Refit the model with each effect of a short list, in its first form and in the one that scores best; gives the
     refitted ones, all that the budget suffices for, but at least the best one beside the model as given. Those that
-    stay far above what the best score leads to are given up; where that is adequate, none is refitted that is far from
-    it. As long as no effect explains most, a disturbance is refitted in all of its forms; after that, only if it is one
-    of the first SHORTLIST, and in those two."""
+    stay far above what the best score leads to are given up; where that is adequate, or is with a second effect, none
+    is refitted that is far from it. As long as no effect explains most, a disturbance is refitted in all of its forms;
+    after that, only if it is one of the first SHORTLIST, and in those two."""
     refits = Refits(case, first, before, candidates)
-    made = [candidate for some in (candidates[:1], candidates[1:]) for candidate in refits.of(some)]
+    made = [*refits.of(candidates[:1])]
+    if made and before is first:
+        made[0].account = account_beside(case, first, made[0].best)
+    made += refits.of(candidates[1:])
     if before is first and made:
         refit_astray(case, first, made)
     return made
+
+
+def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
+    """The adequate model of two effects, one that explains most of the records which are fitted and the one that
+    promises nearly all of the rest; None where there is none."""
+    if adequate(case, first, fit) or share_explained(first.identify, fit.identify, case.floor) < DECISIVE:
+        return None
+    second = promises_most(case, first, fit, NEARLY_ALL)
+    if not second:
+        return None
+    both = refit_from(case, fit, (*fit.effects, second), scorer_of(case, fit).score(second).guesses)
+    return both if adequate(case, first, both) else None
 
 
 class Refits:
@@ -165,9 +188,10 @@ class Refits:
         return self._may_stand(candidate) and self.case.budget.allows("the refits of all candidates", share)
 
     def _may_stand(self, candidate: Candidate) -> bool:
-        if not any(adequate(self.case, self.first, fit) for fit in self.fits):
+        best = self.candidates[0]
+        if best.account is None and not any(adequate(self.case, self.first, fit) for fit in self.fits):
             return True
-        alike = are_look_alikes(self.candidates[0].score.effect, candidate.score.effect)
+        alike = are_look_alikes(best.score.effect, candidate.score.effect)
         return alike or candidate.score.explained >= NOT_ALL
 
     def _share_allowed(self, candidate: Candidate) -> float:
@@ -231,11 +255,13 @@ def explains_most(case: Case, before: Fit, fit: Fit) -> bool:
 def refit_the_rest(
     case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]
 ) -> None:
-    """Beside the model as given, where no effect explains most of the misfit, refit every other one in its first form,
-    whatever it scores: what moves a model far, as a delay by a period of its mode, shows little along its slope. All
-    that is refitted is added to the short list."""
+    """Beside the model as given, where no effect explains most of the misfit, or accounts for it with a second one,
+    refit every other one in its first form, whatever it scores: what moves a model far, as a delay by a period of its
+    mode, shows little along its slope. All that is refitted is added to the short list."""
     fits = [fit for candidate in shortlist for fit in candidate.refits.values()]
-    if before is not first or adequate(case, first, first) or any(explains_most(case, before, fit) for fit in fits):
+    if before is not first or adequate(case, first, first) or any(item.account for item in shortlist):
+        return
+    if any(explains_most(case, before, fit) for fit in fits):
         return
     rival = min((fit.identify for fit in fits), default=np.inf)
     for candidate in candidates:

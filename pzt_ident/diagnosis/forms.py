@@ -40,7 +40,8 @@ class Candidate:
     """An effect that may be missing, in one of its forms.
 
     score, fit: of that form; the fit is None off the short list. forms: the scores of all forms, the first form first;
-    refits: by item, of the first form and of the one that scores best.
+    refits: by item, of the first form and of the one that scores best; account: the fit in which it accounts for all
+    with a second effect.
     """
 
     score: Score
@@ -48,6 +49,7 @@ class Candidate:
     decision: str = "not missing"
     forms: Sequence[Score] = ()
     refits: dict[str, Fit] = field(default_factory=dict)
+    account: Fit | None = None
 
     @classmethod
     def of(cls, scores: Sequence[Score]) -> Candidate:

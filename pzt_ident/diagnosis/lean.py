@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from pzt_ident.diagnosis.budget import WHOLE
@@ -72,7 +73,26 @@ def begin_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListen
         return None
     word, lean, start = alternative
     steps = steps_without(case, first, *alternative)
-    return Lean(word, lean, start, steps, begin(lean, steps, on_step))
+    alike = begin_alike(lean, steps, diagnosis, on_step)
+    return Lean(word, lean, start, steps, alike or begin(lean, steps, on_step))
+
+
+def begin_alike(lean: Case, base: Sequence[Step], diagnosis: Diagnosis, on_step: StepListener) -> Begun | None:
+    """The path without mechanics to the two effects that account for all with them; None where there are none, or these
+    do not without. base: the steps to the model without effects; diagnosis: of the one with mechanics."""
+    account = diagnosis.account
+    if account is None:
+        return None
+    start, steps = base[-1].fit, [*base]
+    for number in range(len(start.effects), len(account.effects)):
+        effects = account.effects[: number + 1]
+        fit = refit(lean, steps[-1].fit, effects, account.values)
+        steps.append(Step(fit, effects[-1], None, {effects[-1]: fit}, explained_share(lean, steps[-1].fit, fit)))
+    if not adequate(lean, start, steps[-1].fit):
+        return None
+    for step in steps:
+        on_step(step)
+    return Begun(diagnosis, Staircase(steps, diagnose(lean, steps[-1].fit, start)))
 
 
 def improve_lean(case: Case, first: Fit, lean: Lean, on_step: StepListener) -> Staircase:

@@ -11,7 +11,7 @@ import numpy as np
 from pzt_ident.diagnosis.accounts import explains_fitted
 from pzt_ident.diagnosis.bounds import FAR_SLIP, SLIP, beyond_guesses, continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
-from pzt_ident.diagnosis.candidates import SHORTLIST, is_disturbance
+from pzt_ident.diagnosis.candidates import SHORTLIST, is_disturbance, listed, refit_forms
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import FAR, adequate, near_noise, removed_rms, removes_enough
@@ -85,6 +85,9 @@ def improve_within(
         known = [step.fit for other in paths for step in other.steps[len(base) :]]
         told = climb(case, base, diagnosis, candidate, on_step, known)
         paths += [told] if told else []
+    if alone := alone_instead(case, first, diagnosis, paths[-1]):
+        told = climb(case, base, diagnosis, alone, on_step)
+        paths += [told] if told else []
     case.budget.begin_proof()
     climbed = {id(path): len(path.steps) for path in paths}
     doubts = finish_all(case, first, paths)
@@ -95,6 +98,21 @@ def improve_within(
     for doubted in [fit for path, fit in doubts if path is best and fit]:
         add_rivals_beside(best.case or case, first, best.steps, doubted)
     conclude(best.case or case, first, best)
+    return best
+
+
+def alone_instead(case: Case, first: Fit, diagnosis: Diagnosis, path: Staircase) -> Candidate | None:
+    """Of the effects that are to be refitted and were not, since two account for all, the best that does so alone."""
+    if not is_adequate(path) or len(path.end.effects) < len(first.effects) + 2:
+        return None
+    waiting = [item for item in listed(case, first, first, diagnosis.candidates) if not item.refits]
+    for item in waiting:
+        if case.budget.allows("the refits of all candidates"):
+            item.refits = refit_forms(case, first, (item.forms[0], item.score), path.end.identify)
+    able = [item for item in waiting if item.refits and adequate(case, first, item.best)]
+    best = min(able, key=lambda item: item.best.total, default=None)
+    if best:
+        best.take(best.best.effects[-1])
     return best
 
 

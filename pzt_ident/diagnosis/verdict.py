@@ -10,12 +10,12 @@ import numpy as np
 from pzt_ident.diagnosis.candidates import (
     PROMISING,
     decide_by_score,
+    listed,
     promises_enough,
     refit_all,
     refit_the_rest,
     restart_unconfirmed,
     score_all,
-    short_list,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
@@ -29,7 +29,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
 )
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.forms import Candidate, choose_forms, least_score, refit_other_forms
+from pzt_ident.diagnosis.forms import Candidate, choose_forms, refit_other_forms
 from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.look_alikes import restart_look_alikes, simpler_look_alikes
 from pzt_ident.diagnosis.misfit import share_explained
@@ -79,6 +79,11 @@ class Diagnosis:
         return next((candidate for candidate in self.candidates if candidate.decision == "missing"), None)
 
     @property
+    def account(self) -> Fit | None:
+        """The fit in which a candidate accounts for all with a second effect."""
+        return next((candidate.account for candidate in self.candidates if candidate.account), None)
+
+    @property
     def fits(self) -> list[Fit]:
         """Those of the candidates that were refitted."""
         return [candidate.fit for candidate in self.candidates if candidate.fit]
@@ -99,9 +104,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)
-    least = least_score(case, first, before)
-    promising = [item for item in candidates if item.score.explained > least]
-    shortlist = refit_all(case, first, before, short_list(promising))
+    shortlist = refit_all(case, first, before, listed(case, first, before, candidates))
     refit_other_forms(case, first, before, candidates, shortlist)
     refit_the_rest(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)

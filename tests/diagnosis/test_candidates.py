@@ -36,6 +36,13 @@ def test_of_the_forms_that_other_records_do_not_confirm_the_best_is_started_anew
     assert [made.validate for made in limit.refits.values()] == [17.0, 1.2, 17.0]
 
 
+@pytest.fixture
+def unaccounted(monkeypatch):
+    """No second effect is looked for."""
+    monkeypatch.setattr(candidates, "account_beside", lambda case, first, fit: None)
+
+
+@pytest.mark.usefixtures("unaccounted")
 @pytest.mark.parametrize(
     ("driven", "promised", "rests", "anew"),
     [
@@ -70,6 +77,7 @@ def test_an_effect_is_fitted_from_random_points_unless_another_promises_what_it_
     assert tried == ([anew] if anew else [])
 
 
+@pytest.mark.usefixtures("unaccounted")
 @pytest.mark.parametrize(
     ("friction", "memory", "driven", "further"),
     [
@@ -100,6 +108,7 @@ def test_what_is_closest_to_the_fitted_records_is_refitted_further_where_it_driv
     assert not gone_on  # beside other effects it is not
 
 
+@pytest.mark.usefixtures("unaccounted")
 @pytest.mark.parametrize(("more", "anew"), [(0, []), (1, ["creep"])])
 def test_nothing_is_fitted_from_random_points_beside_an_adequate_effect_of_no_more_parameters(monkeypatch, more, anew):
     """What scores best may rest on bounds since it stands in for what is refitted after it, in a tenth of the time."""
@@ -141,6 +150,7 @@ def test_disturbances_of_the_short_list_are_refitted_behind_the_first_effect():
     assert [item.score.effect for item in candidates.short_list(promising)] == [words[i] for i in (0, 2, 4, 1, 3)]
 
 
+@pytest.mark.usefixtures("unaccounted")
 @pytest.mark.parametrize(
     ("listed", "explains", "expected"),
     [(True, False, "all"), (True, True, "two"), (False, False, "all"), (False, True, "none")],
@@ -193,6 +203,55 @@ def test_what_scores_little_is_refitted_where_nothing_explains_most(monkeypatch,
     assert all(item.refits for item in shortlist)
 
 
+@pytest.mark.parametrize(
+    ("left", "second", "together", "accounts"),
+    [
+        (4.0, "cross_coupling", 1.0, True),
+        (4.0, "cross_coupling", 2.0, False),
+        (4.0, "", 1.0, False),
+        (9.0, "cross_coupling", 1.0, False),
+        (1.0, "cross_coupling", 1.0, False),
+    ],
+)
+def test_two_effects_account_for_all_where_the_second_promises_nearly_all_that_the_first_leaves(
+    monkeypatch, left, second, together, accounts
+):
+    """A creep of half of the misfit at least, which is not adequate alone, and a coupling."""
+
+    def promises_most(case, first, fit, least):
+        assert least == candidates.NEARLY_ALL
+        return second
+
+    monkeypatch.setattr(candidates, "promises_most", promises_most)
+    monkeypatch.setattr(
+        candidates, "scorer_of", lambda case, fit: SimpleNamespace(score=lambda effect: Score(effect, guesses=[{}]))
+    )
+    monkeypatch.setattr(
+        candidates, "refit_from", lambda case, before, effects, guesses: fit(together, together, effects)
+    )
+    account = candidates.account_beside(CASE, fit(12.0, 12.0), fit(left, left, ["creep"]))
+    assert (account is not None) == accounts
+    assert account is None or account.effects == ("creep", "cross_coupling")
+
+
+@pytest.mark.parametrize(
+    ("account", "refitted"), [(None, ["creep", "friction", "saturation"]), (1, ["creep", "saturation"])]
+)
+def test_where_two_effects_account_for_all_only_what_may_do_so_alone_is_refitted(monkeypatch, account, refitted):
+    first, shares = fit(12.0, 12.0), {"creep": 0.8, "saturation": 0.4, "friction": 0.2}
+    offered = [Candidate.of([Score(word, share, guesses=[{}])]) for word, share in shares.items()]
+    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: fit(8.0, 11.0, effects))
+    monkeypatch.setattr(candidates, "account_beside", lambda *given: account and fit(1.0, 1.0))
+    for astray in ("drives_onto_bounds", "rests_on_bounds"):
+        monkeypatch.setattr(candidates, astray, lambda *given: False)
+    made = candidates.refit_all(CASE, first, first, offered)
+    assert sorted(item.score.effect for item in made) == refitted
+    shortlist = [*made]
+    candidates.refit_the_rest(CASE, first, first, offered, shortlist)
+    assert len(shortlist) == len(made) and (made[0].account is not None) == bool(account)
+
+
+@pytest.mark.usefixtures("unaccounted")
 @pytest.mark.parametrize(("damped", "anew"), [(3.6, "viscous_damping"), (3.7, "resonance")])
 def test_the_simplest_of_the_closest_is_refitted_where_it_leads_off_the_bounds_of_the_model(monkeypatch, damped, anew):
     """A damper left 3.70 floors of a density that rested on a bound, a second mode 3.57, and from elsewhere 0.9."""

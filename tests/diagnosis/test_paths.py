@@ -50,6 +50,7 @@ def taken_of(several, taken_back, monkeypatch, alone=False):
     def take_back(case, first, path):
         path.steps += taken_back(path)
 
+    monkeypatch.setattr(paths, "alone_instead", lambda *given: None)
     monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
     monkeypatch.setattr(paths, "climb", climb)
@@ -143,6 +144,7 @@ def test_what_several_effects_can_do_without_is_told_from_other_starts_too(monke
     words = ("creep", "delay", "drift", "friction")
     fits = [Fit(words[:number], None, np.zeros(1), 1.0, 1.0) for number in range(count + 1)]
     asked = []
+    monkeypatch.setattr(paths, "alone_instead", lambda *given: None)
     monkeypatch.setattr(paths, "near_noise", lambda *arguments: True)
     monkeypatch.setattr(paths, "remove_unneeded", lambda *arguments, newest, restarted: asked.append(restarted) or [])
     monkeypatch.setattr(paths, "unproven_of", lambda *arguments: [])
@@ -224,6 +226,33 @@ def test_no_effect_is_held_against_a_fit_of_other_blocks(monkeypatch):
     monkeypatch.setattr(paths, "unproven", lambda case, first, now, rivals, known: known)
     assert paths.unproven_of(CASE, fits[1], fits[-1], steps) == [fits[1], *fits[1:]]
     assert paths.unproven_of(CASE, fits[0], fits[0], steps[:1]) == [fits[0], fits[0]]
+
+
+@pytest.mark.parametrize(
+    ("verdict", "effects", "alone", "found"),
+    [
+        ("adequate", 2, 1.0, "saturation"),
+        ("adequate", 2, 3.0, None),
+        ("adequate", 1, 1.0, None),
+        ("unexplained", 2, 1.0, None),
+    ],
+)
+def test_ahead_of_a_pair_is_an_effect_that_was_not_refitted_and_does_alone(monkeypatch, verdict, effects, alone, found):
+    items = [
+        Candidate.of([Score(word, share, guesses=[{}])]) for word, share in {"creep": 0.9, "saturation": 0.2}.items()
+    ]
+    items[0].refits = {"creep": fit(4.0, 4.0, ["creep"])}
+    path = SimpleNamespace(last=SimpleNamespace(verdict=verdict), end=fit(1.0, 1.0, ["creep", "drift"][:effects]))
+    tried = []
+
+    def refit_forms(case, before, scores, rival):
+        tried.append((scores[0].effect, rival))
+        return {scores[0].effect: fit(alone, alone, [scores[0].effect])}
+
+    monkeypatch.setattr(paths, "refit_forms", refit_forms)
+    best = paths.alone_instead(CASE, fit(9.0, 9.0), SimpleNamespace(candidates=items), path)
+    assert (best and best.score.effect) == found and (best is None or best.fit.identify == alone)
+    assert tried == ([("saturation", 1.0)] if verdict == "adequate" and effects == 2 else [])
 
 
 @pytest.mark.parametrize(("scores", "tried"), [(0.02, False), (0.9, True)])

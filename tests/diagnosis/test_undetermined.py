@@ -219,3 +219,19 @@ def test_mechanics_that_ring_in_no_record_are_tried_without_like_those_that_the_
     diagnosis = SimpleNamespace(verdict="unexplained", passing=[])
     assert lean.begin_lean(case, fit, diagnosis, lambda step: None) is None
     assert bool(begun) != seen
+
+
+def test_two_effects_that_account_for_all_beside_mechanics_are_tried_without_these_at_once(monkeypatch):
+    """No path without mechanics is climbed for them, unless they do not account for all there."""
+    case, climbed = slow(stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]), []
+    case.ruled_out = tuple({*blocks.effects()} - {*POSSIBLE})
+    first = first_fit(case, 0)
+    diagnosis = verdict.diagnose(case, first)
+    assert {*diagnosis.account.effects} == {"creep", "quadratic_gain"}
+    monkeypatch.setattr(lean, "begin", lambda *given: climbed.append(given))
+    found = lean.begin_lean(case, first, diagnosis, lambda step: None)
+    assert not climbed and found.settled and found.case.words == ("bouc_wen",)
+    assert {*found.begun.path.end.effects} == {"creep", "quadratic_gain"}
+    monkeypatch.setattr(lean, "adequate", lambda case, first, fit: False)
+    lean.begin_lean(case, first, diagnosis, lambda step: None)
+    assert len(climbed) == 1
