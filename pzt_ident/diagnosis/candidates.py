@@ -14,6 +14,7 @@ from pzt_ident.diagnosis.criteria import (
     DECISIVE,
     adequate,
     is_enough,
+    near_noise,
     reaches_noise,
 )
 from pzt_ident.diagnosis.fit import Fit
@@ -149,15 +150,15 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
-    """The adequate model of two effects, one that explains most of the records which are fitted and the one that
-    promises nearly all of the rest; None where there is none."""
+    """The model of two effects that is near the noise, of one that explains most of the records which are fitted and
+    the one that promises nearly all of the rest; None where there is none."""
     if adequate(case, first, fit) or share_explained(first.identify, fit.identify, case.floor) < DECISIVE:
         return None
     second = promises_most(case, first, fit, NEARLY_ALL)
     if not second:
         return None
     both = refit_from(case, fit, (*fit.effects, second), scorer_of(case, fit).score(second).guesses)
-    return both if adequate(case, first, both) else None
+    return both if near_noise(case, first, both) else None
 
 
 class Refits:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from pzt_ident.diagnosis.budget import WHOLE
@@ -33,13 +32,18 @@ def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
     return lean.end.total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
 
 
-class Lean(NamedTuple):
-    """The model without its mechanics, as far as its first path climbs: their word, its case and fit, and the steps to
-    it."""
+class Alternative(NamedTuple):
+    """The model without its mechanics: their word, its case and fit."""
 
     word: str
     case: Case
     start: Fit
+
+
+class Lean(NamedTuple):
+    """The model without its mechanics, as far as its first path climbs: the steps to it, and that path."""
+
+    alternative: Alternative
     steps: list[Step]
     begun: Begun
 
@@ -53,37 +57,57 @@ def lean_or_begun(
     case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener
 ) -> tuple[Staircase | None, Begun | None]:
     """The staircase without mechanics that the data do not show, None where the first path with them alone reaches
-    the noise, or as of `begin_lean`; and that path, None where it was not begun. diagnosis: of the fit `first`."""
-    lean, begun = begin_lean(case, first, diagnosis, on_step), None
-    if lean and not lean.settled and case.budget.allows("effects beside the mechanics"):
+    the noise, or as of `alternative_to`; and that path, None where it was not begun. Where two effects account for all
+    with the mechanics and not without, that path is the first. diagnosis: of the fit `first`."""
+    alternative = alternative_to(case, first, diagnosis)
+    if alternative is None:
+        return None, None
+    begun, lean = None, begin_alike(case, first, alternative, diagnosis, on_step)
+    if diagnosis.account and lean is None:
         begun = begin(case, [Step(first)], on_step, diagnosis)
-    reached = begun is not None and begun.path.last.verdict == "adequate"
-    return (improve_lean(case, first, lean, on_step) if lean and not reached else None), begun
+        if reaches(begun) and not case.budget.allows("effects without the mechanics"):
+            return None, begun
+    lean = lean or begin_lean(case, first, alternative, on_step)
+    if begun is None and not lean.settled and case.budget.allows("effects beside the mechanics"):
+        begun = begin(case, [Step(first)], on_step, diagnosis)
+    if reaches(begun) and not lean.settled:
+        return None, begun
+    return improve_lean(case, first, lean, on_step), begun
 
 
-def begin_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Lean | None:
-    """The path without mechanics that the data do not show; None where these show them, alone or beside the best
+def reaches(begun: Begun | None) -> bool:
+    """Whether a path was begun, and reaches the noise."""
+    return begun is not None and begun.path.last.verdict == "adequate"
+
+
+def alternative_to(case: Case, first: Fit, diagnosis: Diagnosis) -> Alternative | None:
+    """The model without mechanics that the data do not show; None where these show them, alone or beside the best
     effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
     settled = diagnosis.verdict in SETTLED or any(
         adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
     )
     best = min((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total, default=first)
-    alternative = None if settled or unseen_mechanics(best) is None else without_mechanics(case, first)
-    if alternative is None:
-        return None
-    word, lean, start = alternative
+    found = None if settled or unseen_mechanics(best) is None else without_mechanics(case, first)
+    return Alternative(*found) if found else None
+
+
+def begin_lean(case: Case, first: Fit, alternative: Alternative, on_step: StepListener) -> Lean:
+    """The first path without mechanics."""
     steps = steps_without(case, first, *alternative)
-    alike = begin_alike(lean, steps, diagnosis, on_step)
-    return Lean(word, lean, start, steps, alike or begin(lean, steps, on_step))
+    return Lean(alternative, steps, begin(alternative.case, steps, on_step))
 
 
-def begin_alike(lean: Case, base: Sequence[Step], diagnosis: Diagnosis, on_step: StepListener) -> Begun | None:
+def begin_alike(
+    case: Case, first: Fit, alternative: Alternative, diagnosis: Diagnosis, on_step: StepListener
+) -> Lean | None:
     """The path without mechanics to the two effects that account for all with them; None where there are none, or these
-    do not without. base: the steps to the model without effects; diagnosis: of the one with mechanics."""
+    do not without. diagnosis: of the model with mechanics."""
     account = diagnosis.account
     if account is None:
         return None
-    start, steps = base[-1].fit, [*base]
+    _, lean, start = alternative
+    base = steps_without(case, first, *alternative)
+    steps = [*base]
     for number in range(len(start.effects), len(account.effects)):
         effects = account.effects[: number + 1]
         fit = refit(lean, steps[-1].fit, effects, account.values)
@@ -92,17 +116,18 @@ def begin_alike(lean: Case, base: Sequence[Step], diagnosis: Diagnosis, on_step:
         return None
     for step in steps:
         on_step(step)
-    return Begun(diagnosis, Staircase(steps, diagnose(lean, steps[-1].fit, start)))
+    return Lean(alternative, base, Begun(diagnosis, Staircase(steps, diagnose(lean, steps[-1].fit, start))))
 
 
 def improve_lean(case: Case, first: Fit, lean: Lean, on_step: StepListener) -> Staircase:
     """The staircase without mechanics, or that with them at a second mode which it has. first: the model with them."""
-    staircase = improve_within(lean.case, lean.steps, on_step, begun=lean.begun)
+    word, without, start = lean.alternative
+    staircase = improve_within(without, lean.steps, on_step, begun=lean.begun)
     if moved := with_mechanics_moved(case, first, staircase.end, on_step):
         return moved
-    share = explained_share(case, lean.start, first)
+    share = explained_share(case, start, first)
     mode = None if undetermined_mechanics(first) else mode_that_is_silent(first)
-    staircase.suspects.append(Undetermined(lean.word, share, staircase.end.total / case.floor, mode))
+    staircase.suspects.append(Undetermined(word, share, staircase.end.total / case.floor, mode))
     return staircase
 
 

@@ -207,6 +207,7 @@ def test_what_scores_little_is_refitted_where_nothing_explains_most(monkeypatch,
     ("left", "second", "together", "accounts"),
     [
         (4.0, "cross_coupling", 1.0, True),
+        (4.0, "cross_coupling", 1.4, True),
         (4.0, "cross_coupling", 2.0, False),
         (4.0, "", 1.0, False),
         (9.0, "cross_coupling", 1.0, False),

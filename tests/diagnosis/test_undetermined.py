@@ -94,7 +94,7 @@ def test_mechanics_that_are_determined_beside_the_best_effect_are_kept(monkeypat
     best = min(diagnosis.passing, key=lambda item: item.fit.total).fit
     monkeypatch.setattr(lean, "unseen_mechanics", lambda fit: beside if fit is best else "lumped")
     monkeypatch.setattr(lean, "without_mechanics", lambda case, first: tried.append(case))
-    assert lean.begin_lean(case, first, diagnosis, lambda step: None) is None
+    assert lean.alternative_to(case, first, diagnosis) is None
     assert bool(tried) == (beside is not None)
 
 
@@ -176,7 +176,8 @@ def test_the_first_path_with_mechanics_is_taken_where_it_alone_reaches_the_noise
     """Before those without them are gone on with: what is left is then for its proof."""
     case, begun, led = slow(SEVERAL), [], SimpleNamespace(end=SimpleNamespace(total=0.0), last=None)
     first = first_fit(case, 0)
-    other = lean.Lean("lumped", case, first, [Step(first)], Begun(None, SimpleNamespace(last=verdict_of(without))))
+    path = SimpleNamespace(last=verdict_of(without))
+    other = lean.Lean(lean.Alternative("lumped", case, first), [Step(first)], Begun(None, path))
     given = SimpleNamespace(end=first, last=verdict_of(beside), steps=[Step(first)], case=None)
     led.last = verdict_of("adequate" if without == "adequate" else "unexplained")
 
@@ -193,12 +194,13 @@ def test_the_first_path_with_mechanics_is_taken_where_it_alone_reaches_the_noise
         "enough_without_mechanics",
     ):
         monkeypatch.setattr(staircase, word, lambda *arguments: None)
+    monkeypatch.setattr(lean, "alternative_to", lambda *arguments: other.alternative)
     monkeypatch.setattr(lean, "begin_lean", lambda *arguments: other)
     monkeypatch.setattr(lean, "begin", begin)
     monkeypatch.setattr(lean, "improve_lean", lambda *arguments: led)
     monkeypatch.setattr(staircase, "improve_within", lambda *arguments: arguments[-1].path)
     monkeypatch.setattr(staircase, "with_least_bounds", lambda case, path: path)
-    found = staircase.improve_judged(case, first, lambda step: None, SimpleNamespace())
+    found = staircase.improve_judged(case, first, lambda step: None, SimpleNamespace(account=None))
     assert found is (led if taken == "lean" else given)
     assert len(begun) == (without != "adequate")
 
@@ -217,21 +219,31 @@ def test_mechanics_that_ring_in_no_record_are_tried_without_like_those_that_the_
     begun = []
     monkeypatch.setattr(lean, "without_mechanics", lambda case, first: begun.append(first))
     diagnosis = SimpleNamespace(verdict="unexplained", passing=[])
-    assert lean.begin_lean(case, fit, diagnosis, lambda step: None) is None
+    assert lean.alternative_to(case, fit, diagnosis) is None
     assert bool(begun) != seen
 
 
-def test_two_effects_that_account_for_all_beside_mechanics_are_tried_without_these_at_once(monkeypatch):
-    """No path without mechanics is climbed for them, unless they do not account for all there."""
+@pytest.mark.parametrize(("alike", "lasts"), [(True, True), (False, True), (False, False)])
+def test_two_effects_that_account_for_all_beside_mechanics_are_tried_without_these_at_once(monkeypatch, alike, lasts):
+    """A path without mechanics is climbed for them only where they do not account for all there, behind the one with
+    them, if that leaves time."""
     case, climbed = slow(stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]), []
     case.ruled_out = tuple({*blocks.effects()} - {*POSSIBLE})
-    first = first_fit(case, 0)
+    first, begin = first_fit(case, 0), lean.begin
     diagnosis = verdict.diagnose(case, first)
     assert {*diagnosis.account.effects} == {"creep", "quadratic_gain"}
-    monkeypatch.setattr(lean, "begin", lambda *given: climbed.append(given))
-    found = lean.begin_lean(case, first, diagnosis, lambda step: None)
-    assert not climbed and found.settled and found.case.words == ("bouc_wen",)
-    assert {*found.begun.path.end.effects} == {"creep", "quadratic_gain"}
-    monkeypatch.setattr(lean, "adequate", lambda case, first, fit: False)
-    lean.begin_lean(case, first, diagnosis, lambda step: None)
-    assert len(climbed) == 1
+
+    def counted(case, *more):
+        climbed.append(case.words)
+        return begin(case, *more)
+
+    monkeypatch.setattr(lean, "begin", counted)
+    if not alike:
+        adequate = lean.adequate
+        monkeypatch.setattr(lean, "adequate", lambda case, *fits: case.words == BLOCKS and adequate(case, *fits))
+        monkeypatch.setattr(case.budget, "allows", lambda what, *share: lasts or "without" not in what)
+    found, begun = lean.lean_or_begun(case, first, diagnosis, lambda step: None)
+    assert climbed == ([] if alike else [BLOCKS, ("bouc_wen",)] if lasts else [BLOCKS])
+    assert (found is not None) == lasts and (begun is not None) == (not alike)
+    end = found.end if found else begun.path.end
+    assert {*end.effects} == {"creep", "quadratic_gain"}
