@@ -10,7 +10,6 @@ import numpy as np
 from pzt_ident.diagnosis.behind import exchange_behind
 from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
-from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.contained import join_look_alikes, separate_accounts
 from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
@@ -22,6 +21,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import fitting_forms
 from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import Score, scorer_of
+from pzt_ident.diagnosis.scores import promises_most
 from pzt_ident.diagnosis.starts import at_a_glance, best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.notation import listed
-from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -17,6 +16,7 @@ from pzt_ident.diagnosis.misfit import share_explained, squared_misfit
 from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit, refit_from, start_of
 from pzt_ident.diagnosis.score import scorer_of
+from pzt_ident.diagnosis.scores import promises_most
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import has_operator
 from pzt_ident.diagnosis.verdict import Diagnosis

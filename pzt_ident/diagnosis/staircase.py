@@ -10,7 +10,6 @@ import numpy as np
 from pzt_ident.diagnosis.accounts import accounts, explains_fitted, keeps_within, outdoes
 from pzt_ident.diagnosis.bounds import beyond_bounds, continued, widened
 from pzt_ident.diagnosis.budget import WHOLE
-from pzt_ident.diagnosis.candidates import likeliest
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
@@ -25,6 +24,7 @@ from pzt_ident.diagnosis.least_bounds import with_least_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.scores import likeliest
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import enough_without_mechanics

@@ -8,14 +8,12 @@ from itertools import combinations
 import numpy as np
 
 from pzt_ident.diagnosis.candidates import (
-    PROMISING,
     decide_by_score,
     listed,
     promises_enough,
     refit_all,
     refit_the_rest,
     restart_unconfirmed,
-    score_all,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
@@ -43,6 +41,7 @@ from pzt_ident.diagnosis.reasons import (
 )
 from pzt_ident.diagnosis.refit import change_if_too_coarse, refit
 from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of
+from pzt_ident.diagnosis.scores import PROMISING, score_all
 from pzt_ident.diagnosis.spectral_line import is_own_line
 from pzt_ident.diagnosis.ties import (
     LIMIT_TIE,

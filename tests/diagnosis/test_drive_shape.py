@@ -8,7 +8,7 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import candidates, drive_shape, staircase
+from pzt_ident.diagnosis import drive_shape, scores, staircase
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.drive_shape import LINEAR as ON_LINES
@@ -82,7 +82,7 @@ def test_smooth_drives_are_looked_for_behind_the_likeliest_effect_ahead_of_a_dia
     case = Case(("bouc_wen",), (), records(3e-3), LINEAR)
     first, asked = first_fit(case, 0), []
     scored = [Candidate(Score("sensor_lag", explained_in_bounds=explained)), Candidate(Score("drift"))]
-    monkeypatch.setattr(candidates, "score_all", lambda *arguments, **more: scored)
+    monkeypatch.setattr(scores, "score_all", lambda *arguments, **more: scored)
     monkeypatch.setattr(staircase, "with_other_drives", lambda *arguments: None)
     monkeypatch.setattr(staircase, "other_behind", lambda case, first, best: asked.append(best) or (best and "smooth"))
     monkeypatch.setattr(staircase, "improve_otherwise", lambda *arguments: "smooth")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import candidates, climb, exchange, staircase
+from pzt_ident.diagnosis import climb, exchange, scores, staircase
 from pzt_ident.diagnosis.budget import EXPLORING, Budget
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import add_pair, add_restarted
@@ -318,10 +318,10 @@ def test_a_path_ends_where_it_joins_a_known_one_that_is_as_low():
 )
 def test_a_look_alike_of_what_was_added_promises_nothing_beside_it(monkeypatch, explained, added, promised):
     scored = [Candidate(Score("sensor_lag", explained_in_bounds=explained)), Candidate(Score("drift"))]
-    monkeypatch.setattr(candidates, "score_all", lambda *arguments, **more: scored)
-    monkeypatch.setattr(candidates, "scorer_of", lambda case, fit: None)
+    monkeypatch.setattr(scores, "score_all", lambda *arguments, **more: scored)
+    monkeypatch.setattr(scores, "scorer_of", lambda case, fit: None)
     first, fit = SimpleNamespace(effects=()), SimpleNamespace(effects=added)
-    assert candidates.promises_most(None, first, fit) == promised
+    assert scores.promises_most(None, first, fit) == promised
 
 
 @pytest.mark.parametrize("restarted", [False, True])

@@ -11,7 +11,7 @@ import rig
 import stage
 from pzt_ident.diagnosis import budget, refit, starts, threads
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import decide_by_score, refit_all, score_all, worth_other_forms
+from pzt_ident.diagnosis.candidates import decide_by_score, refit_all
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -19,6 +19,7 @@ from pzt_ident.diagnosis.forms import NOT_ALL, Candidate, contending_forms, leas
 from pzt_ident.diagnosis.look_alikes import restart_look_alikes
 from pzt_ident.diagnosis.reasons import missing_sentence, nothing_explains
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
+from pzt_ident.diagnosis.scores import score_all, worth_other_forms
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.ties import are_look_alikes
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
