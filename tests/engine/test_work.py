@@ -5,6 +5,8 @@ import pytest
 
 import stage
 from pzt_ident.engine import work
+from pzt_ident.engine.lanes import Variant, layout_of
+from pzt_ident.model.registry import blocks
 
 
 def done_by(function, *arguments):
@@ -30,6 +32,19 @@ def test_what_a_block_solves_for_is_work():
     walls, loops = (case.with_words((word,)).problem(()) for word in ("domain_wall", "bouc_wen"))
     points = np.random.default_rng(0).uniform(size=(512, walls.dimensions))
     assert done_by(walls.loss, points) > 4 * done_by(loops.loss, points[:, : loops.dimensions])
+
+
+def test_branches_that_are_read_by_series_are_a_third_of_the_work():
+    """Those of a free energy, as ferroelectric models time them (`experiments/performance`); not a sample a call."""
+    block = blocks["homogenized_energy"]
+    whole, single = layout_of(block, Variant()), layout_of(block, Variant(single=True))
+    assert whole.idle == 2 * (whole.first_given + whole.copies * whole.given) // 3 and single.idle == 0
+    case = stage.case({}).with_words(("homogenized_energy",))
+    problem = case.problem(())
+    points = np.random.default_rng(0).uniform(size=(24, problem.dimensions))
+    steps = 24 * sum(record.samples for record in problem.records if record.use == "identify")
+    counted = (done_by(problem.loss, points) - work.CALL) / steps - work.LANE
+    assert counted == pytest.approx(work.ROW * (whole.rows - whole.idle), rel=0.05)
 
 
 def test_more_candidates_samples_and_blocks_are_more_work(problem):
