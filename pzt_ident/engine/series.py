@@ -55,28 +55,29 @@ def range_over(c, at, j, low, high):
 
 
 @register_jitable(forceinline=True)
-def place(c, at, count, first):
-    """The arguments at so many nodes, those of NODES from the first on, with values of zero."""
+def place(c, at, count, first, lanes):
+    """The arguments at so many nodes, those of NODES from the first on, with values of zero. lanes: of a row."""
     for k in range(count):
-        for j in range(WIDTH):
+        for j in range(lanes):
             c[at + ARGUMENTS + k * WIDTH + j] = c[at + MIDDLE + j] + c[at + HALF + j] * NODES[first + k]
             c[at + VALUES + k * WIDTH + j] = 0.0
 
 
 @register_jitable(forceinline=True)
-def fit(c, at, count, first):
-    """The coefficients of the powers by the values at the nodes. first: of those of SHARES and TO_POWERS."""
+def fit(c, at, count, first, lanes):
+    """The coefficients of the powers by the values at the nodes. first: of those of SHARES and TO_POWERS. lanes: of a
+    row."""
     for m in range(count):
-        for j in range(WIDTH):
+        for j in range(lanes):
             c[at + POWERS + m * WIDTH + j] = 0.0
         for k in range(count):
-            for j in range(WIDTH):
+            for j in range(lanes):
                 c[at + POWERS + m * WIDTH + j] += SHARES[first + m * count + k] * c[at + VALUES + k * WIDTH + j]
     for m in range(count):
-        for j in range(WIDTH):
+        for j in range(lanes):
             c[at + POWERS + m * WIDTH + j] *= TO_POWERS[first + m * count + m]
         for k in range(m + 2, count, 2):
-            for j in range(WIDTH):
+            for j in range(lanes):
                 c[at + POWERS + m * WIDTH + j] += TO_POWERS[first + m * count + k] * c[at + POWERS + k * WIDTH + j]
 
 

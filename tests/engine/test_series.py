@@ -35,11 +35,11 @@ def test_a_fit_is_the_polynomial_through_the_values(count):
     values = np.random.default_rng(0).normal(size=(count, WIDTH))
     scratch = np.zeros(series.POWERS + count * WIDTH)
     scratch[series.VALUES : series.VALUES + values.size] = values.ravel()
-    series.fit(scratch, 0, count, sum(each**2 for each in counts))
+    series.fit(scratch, 0, count, sum(each**2 for each in counts), WIDTH)
     powers = scratch[series.POWERS :].reshape(count, WIDTH)
     np.testing.assert_allclose(np.vander(series.nodes_of(count), increasing=True) @ powers, values, atol=1e-9)
     series.range_over(scratch, 0, 3, 2.0, 6.0)
-    series.place(scratch, 0, count, sum(counts))
+    series.place(scratch, 0, count, sum(counts), WIDTH)
     at = scratch[series.ARGUMENTS : series.ARGUMENTS + values.size].reshape(count, WIDTH)[:, 3]
     np.testing.assert_allclose(at, 4 + 2 * series.nodes_of(count))
 
