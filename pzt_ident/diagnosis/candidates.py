@@ -45,7 +45,7 @@ AS_CLOSE = 1.1  # times what the closest to the records which are fitted leaves:
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
-def listed(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
+def shortlist_of(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """The effects to be refitted, of all that were scored: see `short_list`."""
     least = least_score(case, first, before)
     ranked = sorted(candidates, key=lambda item: -item.rank)

@@ -11,7 +11,7 @@ import numpy as np
 from pzt_ident.diagnosis.accounts import explains_fitted
 from pzt_ident.diagnosis.bounds import FAR_SLIP, SLIP, beyond_guesses, continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
-from pzt_ident.diagnosis.candidates import SHORTLIST, is_disturbance, listed, refit_forms
+from pzt_ident.diagnosis.candidates import SHORTLIST, is_disturbance, refit_forms, shortlist_of
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import FAR, adequate, near_noise, removed_rms, removes_enough
@@ -105,7 +105,7 @@ def alone_instead(case: Case, first: Fit, diagnosis: Diagnosis, path: Staircase)
     """Of the effects that are to be refitted and were not, since two account for all, the best that does so alone."""
     if not is_adequate(path) or len(path.end.effects) < len(first.effects) + 2:
         return None
-    waiting = [item for item in listed(case, first, first, diagnosis.candidates) if not item.refits]
+    waiting = [item for item in shortlist_of(case, first, first, diagnosis.candidates) if not item.refits]
     for item in waiting:
         if case.budget.allows("the refits of all candidates"):
             item.refits = refit_forms(case, first, (item.forms[0], item.score), path.end.identify)

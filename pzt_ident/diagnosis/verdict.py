@@ -9,11 +9,11 @@ import numpy as np
 
 from pzt_ident.diagnosis.candidates import (
     decide_by_score,
-    listed,
     promises_enough,
     refit_all,
     refit_the_rest,
     restart_unconfirmed,
+    shortlist_of,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
@@ -103,7 +103,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)
-    shortlist = refit_all(case, first, before, listed(case, first, before, candidates))
+    shortlist = refit_all(case, first, before, shortlist_of(case, first, before, candidates))
     refit_other_forms(case, first, before, candidates, shortlist)
     refit_the_rest(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)

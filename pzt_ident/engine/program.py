@@ -99,6 +99,11 @@ class Program:
         number = np.cumsum([item.block is not None for item in self.operations])
         return [rows[n - 1] if n else 0 for n in number]
 
+    def uncounted(self, shared: int) -> int:
+        """Rows that are not counted as work where candidates share so many operations: those of these, and idle ones of
+        the others."""
+        return (self.ends[shared - 1] if shared else 0) + sum(item.idle for item in self.operations[shared:])
+
     @cached_property
     def operator_end(self) -> int | None:
         """That row of the first operator; None where there is none."""

@@ -231,13 +231,12 @@ class Simulator:
 
     def _shared(self, scratch: Array, steps: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array, int]:
         """The steps and the signals, without those that all candidates share where they are known; and how many rows of
-        the scratch that are counted as work those have that they do not share."""
+        the scratch are counted as work, those of what they do not share."""
         from pzt_ident.engine.prefix import shared_operations, shared_prefix
 
         count = shared_operations(self._program, scratch)
         steps, signals = shared_prefix(self._program, scratch, steps, self._signals, count)
-        idle = sum(item.idle for item in self._program.operations[count:])
-        return steps, signals, self._rows - idle - (self._program.ends[count - 1] if count else 0)
+        return steps, signals, self._rows - self._program.uncounted(count)
 
     def _run(
         self,

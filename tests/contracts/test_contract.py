@@ -124,6 +124,12 @@ DECLARED = [
     (MODES, 'weights = ("push", "shape")', "", "Two.weights: does not name two"),
     (MODES, '("push",', '("pushh",', r"Two.weights: unknown parameter 'pushh'\n.*'push'"),
     (BANK, "4, (1, 10)", "4, None", "Plays.plays: bounds None are no range"),
+    (
+        BANK,
+        "def output",
+        "def read(p, weight, half):\n        return weight * p\n\n    def output",
+        "Plays.rests: has no",
+    ),
     (BANK, "plays = ", "solved = ('omega',)\n    plays = ", "Plays.solve: has no function `solve`"),
     (BANK, "4, (1, 10)", "40, (1, 10)", "Plays.plays: 40 is not a whole number from 1 to 10"),
     (BANK, 'count="plays"', "count=3", "Plays.weight: there are 3 of it for 4 branches"),

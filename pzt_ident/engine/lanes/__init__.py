@@ -101,7 +101,8 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     template = template_of(block, variant)
     layout = layout_of(block, variant)  # type: ignore[arg-type]
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    sources = [text, kernel.VERSION, str(layout), str(variant), *kernel.sources("jit", "elementary", "series")]
+    sources = [text, kernel.VERSION, str(layout), str(variant), *kernel.sources("jit", "elementary")]
+    sources += [str(kernel.SERIES), *kernel.sources("series")] if layout.smooth else []
     name = native.name_of(f"{block.__name__.lower()}_{template}", *sources, *author_sources(block))
 
     def tile() -> Any:
