@@ -19,7 +19,6 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import (
     AS_LIKELY,
-    NEARLY_ALL,
     NOT_ALL,
     Candidate,
     drives_onto_bounds,
@@ -34,13 +33,14 @@ from pzt_ident.diagnosis.forms import (
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, scorer_of
-from pzt_ident.diagnosis.scores import PROMISING, promises_most
+from pzt_ident.diagnosis.scores import PROMISING, promises_most, score_all
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import are_look_alikes
 from pzt_ident.model.registry import blocks
 
 SHORTLIST = 6  # effects that are refitted
+SECONDS = 3  # effects that are tried as the second of two that account for all
 AS_CLOSE = 1.1  # times what the closest to the records which are fitted leaves: the simplest of these is meant
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -98,15 +98,27 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
-    """The model of two effects that is near the noise, of one that explains most of the records which are fitted and
-    the one that promises nearly all of the rest; None where there is none."""
+    """The model of two effects that is near the noise, or at that of the records which are fitted, of one that explains
+    most of these and one that promises most of the rest; None where there is none."""
     if adequate(case, first, fit) or share_explained(first.identify, fit.identify, case.floor) < DECISIVE:
         return None
-    second = promises_most(case, first, fit, NEARLY_ALL)
-    if not second:
-        return None
-    both = refit_from(case, fit, (*fit.effects, second), scorer_of(case, fit).score(second).guesses)
-    return both if near_noise(case, first, both) else None
+    for score in seconds_beside(case, first, fit):
+        both = refit_from(case, fit, (*fit.effects, score.effect), score.guesses)
+        if near_noise(case, first, both) or reaches_noise(case, first, both):
+            return both
+    return None
+
+
+def seconds_beside(case: Case, first: Fit, fit: Fit) -> list[Score]:
+    """The scores of the effects that promise most of what a fit leaves, and are no look-alikes of its own: some of the
+    best, those last that follow anything."""
+    scores = [item.score for item in score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)]
+    able = [
+        score
+        for score in scores
+        if score.explained_in_bounds >= DECISIVE and not are_look_alikes(fit.effects[-1], score.effect)
+    ]
+    return sorted(able, key=lambda score: (_follows_anything(score.effect), -score.explained_in_bounds))[:SECONDS]
 
 
 class Refits:

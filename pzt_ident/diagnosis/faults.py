@@ -64,7 +64,7 @@ def faults_of(case: Case, first: Fit, share: float = WHOLE) -> Iterator[tuple[st
     for word in sorted(fits, key=lambda word: fits[word].total):
         fit = fits[word]
         at_side = share_explained(first.total, fit.total, case.floor) >= DECISIVE and not adequate(case, first, fit)
-        yield word, restart(case, fit) if at_side and not case.budget.spent(share) else fit
+        yield word, restart(case, fit, share=share) if at_side else fit
 
 
 def fault_instead(case: Case, first: Fit, share: float = WHOLE) -> Staircase | None:

@@ -173,18 +173,18 @@ def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
     return case.descend(problem, point) if len(set(best.values())) > 1 else point
 
 
-def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
+def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS, share: float = 1.0) -> Fit:
     """The best of the fit and of fits restarted from other values of one block, on all axes together, the rest kept: of
     each block in turn but of those that guess from a residual, as the frequency of a line, or of `block` only. A block
     may rest in a side minimum, such as a distant resonance, when it was fitted beside a misfit that has since been
-    explained, or from a poor guess."""
+    explained, or from a poor guess. share: of the budget, after which none is begun."""
     problem = fit.problem
     owners = [problem.model.entries[column].block for column in problem.free]
     rng = np.random.default_rng(0)
     fits = [fit]
     chosen = [owner for owner in owners if owner.name == block or (not block and not hasattr(owner, "guess"))]
     for owner in dict.fromkeys(chosen):
-        if not case.budget.lasts():
+        if case.budget.spent(share) or not case.budget.lasts():
             break
         restarted = np.array([column_owner is owner for column_owner in owners])
         starts = restarts(problem, fit.point, restarted, random_points(problem, rng))[:starts_per_block]
@@ -192,7 +192,9 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
         for point in (*minima[1:], best_of_each_axis(case, problem, minima)):
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
     best = best_with_fine_steps(case, fits, lambda candidate: candidate.total)
-    return best if block else min(best, best_alias(case, best), key=lambda candidate: candidate.total)
+    if block or case.budget.spent(share):
+        return best
+    return min(best, best_alias(case, best), key=lambda candidate: candidate.total)
 
 
 def restarts(problem: Problem, point: Array, restarted: NDArray[np.bool_], points: Array) -> Array:

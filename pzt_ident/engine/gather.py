@@ -147,12 +147,17 @@ class Rotated:
 
     def add(self, at: slice, error: Array) -> NDArray[np.bool_]:
         """Take up the errors (candidates, samples) of a stretch; which candidates have signals that are not finite."""
-        bases = [self.additions.stretch(self.axis, self.theta[group[0]], at) for group in self.groups]
-        failed = np.zeros(len(error), dtype=bool)
-        for group, basis in zip(self.groups, bases, strict=True):
+        failed, rows = np.zeros(len(error), dtype=bool), np.empty((len(self.triangle.r), error.shape[1]))
+        bases, errors = np.split(rows, [len(self.groups) * self.count])
+        for group, basis in zip(self.groups, np.split(bases, len(self.groups)), strict=True):
+            basis[:] = self.additions.stretch(self.axis, self.theta[group[0]], at)
             if not np.isfinite(basis.sum()):
                 failed[group], basis[:] = True, 0
-        self.triangle.add(np.vstack([*bases, self.weights @ error if self.alike else error]))
+        if self.alike:
+            np.matmul(self.weights, error, out=errors)
+        else:
+            errors[:] = error
+        self.triangle.add(rows)
         return failed
 
     @property

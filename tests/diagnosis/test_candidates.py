@@ -204,35 +204,40 @@ def test_what_scores_little_is_refitted_where_nothing_explains_most(monkeypatch,
 
 
 @pytest.mark.parametrize(
-    ("left", "second", "together", "accounts"),
+    ("left", "promised", "together", "second"),
     [
-        (4.0, "cross_coupling", 1.0, True),
-        (4.0, "cross_coupling", 1.4, True),
-        (4.0, "cross_coupling", 2.0, False),
-        (4.0, "", 1.0, False),
-        (9.0, "cross_coupling", 1.0, False),
-        (1.0, "cross_coupling", 1.0, False),
+        (4.0, {"cross_coupling": 0.9}, {"cross_coupling": (1.0, 1.0)}, "cross_coupling"),
+        (4.0, {"cross_coupling": 0.6}, {"cross_coupling": (1.4, 1.4)}, "cross_coupling"),
+        (4.0, {"cross_coupling": 0.6}, {"cross_coupling": (1.1, 4.0)}, "cross_coupling"),
+        (4.0, {"cross_coupling": 0.6}, {"cross_coupling": (2.0, 2.0)}, None),
+        (4.0, {"cross_coupling": 0.4}, {"cross_coupling": (1.0, 1.0)}, None),
+        (4.0, {"drift": 0.9}, {"drift": (1.0, 1.0)}, None),
+        (9.0, {"cross_coupling": 0.9}, {"cross_coupling": (1.0, 1.0)}, None),
+        (1.0, {"cross_coupling": 0.9}, {"cross_coupling": (1.0, 1.0)}, None),
+        (
+            4.0,
+            {"distributed_memory": 0.9, "saturation": 0.8, "friction": 0.7},
+            {"distributed_memory": (1.0, 1.0), "saturation": (2.0, 2.0), "friction": (1.0, 1.0)},
+            "friction",
+        ),
+        (4.0, {"friction": 0.9, "saturation": 0.8, "slew_limit": 0.7, "resonance": 0.6}, {"resonance": (1, 1)}, None),
     ],
 )
-def test_two_effects_account_for_all_where_the_second_promises_nearly_all_that_the_first_leaves(
-    monkeypatch, left, second, together, accounts
+def test_two_effects_account_for_all_where_the_second_promises_most_of_what_the_first_leaves(
+    monkeypatch, left, promised, together, second
 ):
-    """A creep of half of the misfit at least, which is not adequate alone, and a coupling."""
-
-    def promises_most(case, first, fit, least):
-        assert least == candidates.NEARLY_ALL
-        return second
-
-    monkeypatch.setattr(candidates, "promises_most", promises_most)
+    """A creep of half of the misfit at least, which is not adequate alone, and one of three others: no look-alike, and
+    last what follows anything."""
+    offered = [Candidate.of([Score(word, share, share, guesses=[{}])]) for word, share in promised.items()]
+    monkeypatch.setattr(candidates, "score_all", lambda *given, in_every_form: offered)
+    monkeypatch.setattr(candidates, "scorer_of", lambda case, fit: None)
     monkeypatch.setattr(
-        candidates, "scorer_of", lambda case, fit: SimpleNamespace(score=lambda effect: Score(effect, guesses=[{}]))
-    )
-    monkeypatch.setattr(
-        candidates, "refit_from", lambda case, before, effects, guesses: fit(together, together, effects)
+        candidates,
+        "refit_from",
+        lambda case, before, effects, guesses: fit(*together.get(effects[-1], (3.0, 3.0)), effects),
     )
     account = candidates.account_beside(CASE, fit(12.0, 12.0), fit(left, left, ["creep"]))
-    assert (account is not None) == accounts
-    assert account is None or account.effects == ("creep", "cross_coupling")
+    assert (account.effects if account else None) == (("creep", second) if second else None)
 
 
 @pytest.mark.parametrize(

@@ -175,11 +175,12 @@ def test_each_axis_is_restarted_from_its_own_best_of_the_random_points():
     assert (restarts(problem, point, only_x, points)[:, ~only_x] == 0.5).all()
 
 
-def test_where_nothing_is_left_of_the_budget_no_start_is_ranked(plain, monkeypatch):
+@pytest.mark.parametrize(("seconds", "share"), [(0.0, 1.0), (None, 0.0)])
+def test_where_nothing_is_left_of_the_budget_no_start_is_ranked(plain, monkeypatch, seconds, share):
     fit = first_fit(plain, 0)
     monkeypatch.setattr(Problem, "rough_by_axis", lambda *arguments: pytest.fail("ranked"))
-    monkeypatch.setattr(plain, "budget", Budget(0.0))
-    assert restart(plain, fit).identify <= fit.identify
+    monkeypatch.setattr(plain, "budget", Budget(seconds))
+    assert restart(plain, fit, share=share).identify <= fit.identify
 
 
 def test_few_points_are_ranked_where_each_costs_a_solution():
