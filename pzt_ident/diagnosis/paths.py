@@ -97,7 +97,7 @@ def improve_within(
     find_rivals(best.case or case, first, best.steps, on_step)
     for doubted in [fit for path, fit in doubts if path is best and fit]:
         add_rivals_beside(best.case or case, first, best.steps, doubted)
-    conclude(best.case or case, first, best)
+    conclude(best.case or case, first, best, diagnosis)
     return best
 
 
@@ -276,10 +276,17 @@ def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> tu
     return None if best is end else (best, doubted)
 
 
-def conclude(case: Case, first: Fit, staircase: Staircase) -> None:
+def conclude(case: Case, first: Fit, staircase: Staircase, given: Diagnosis | None = None) -> None:
     """Diagnose the last model where that is another one than the path led to; what no effect explains then is
-    unexplained."""
-    if staircase.last.before is not staircase.end:
-        staircase.last = diagnose(case, staircase.end, first)
+    unexplained. given: the diagnosis of the model as given, which holds where the path is back there."""
+    end = staircase.end
+    if staircase.last.before is not end:
+        back = given and leads_back(case, given.before, end)
+        staircase.last = replace(given, before=end) if given and back else diagnose(case, end, first)
     if staircase.last.verdict not in SETTLED:
         staircase.last = unexplained(case, first, staircase.last)
+
+
+def leads_back(case: Case, given: Fit, end: Fit) -> bool:
+    """Whether a path ends at the model as given, and leaves what that left."""
+    return end.effects == given.effects and removed_rms(given.total, end.total) < TIE * case.floor

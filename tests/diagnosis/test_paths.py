@@ -271,3 +271,24 @@ def test_a_disturbance_that_scored_too_little_for_the_short_list_is_added_first_
         diagnosis = SimpleNamespace(candidates=items, passing=passing)
         found = [item.score.effect for item in paths.first_candidates(CASE, first, diagnosis)]
         assert ("periodic_disturbance" in found) == (tried or is_first)
+
+
+@pytest.mark.parametrize(
+    ("end", "diagnosed"),
+    [(fit(5.0, 5.0), False), (fit(5.01, 5.0), False), (fit(4.0, 5.0), True), (fit(5.0, 5.0, ["creep"]), True)],
+)
+def test_a_path_that_leads_back_to_the_model_as_given_has_its_diagnosis(monkeypatch, end, diagnosed):
+    first, anew = fit(5.0, 5.0), []
+    creep = Candidate(Score("creep", explained=0.8), decision="missing")
+
+    def diagnose(case, end, first):
+        anew.append(end)
+        return Diagnosis("unexplained", "", end, [], [])
+
+    monkeypatch.setattr(paths, "diagnose", diagnose)
+    given = Diagnosis("missing", "creep is missing", first, [creep], ["creep"])
+    path = Staircase([Step(first), Step(end)], Diagnosis("missing", "", fit(2.0, 2.0, ["creep"]), [], []))
+    paths.conclude(CASE, first, path, given)
+    assert anew == [end] * diagnosed
+    assert path.last.before is end and path.last.verdict == "unexplained"
+    assert [item.decision for item in path.last.candidates] == ([] if diagnosed else ["suspect"])
