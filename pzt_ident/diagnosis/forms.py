@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
 )
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.modes import with_modes_exchanged
 from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_from
@@ -183,8 +184,10 @@ def share_of_others(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) ->
 
 def second_missing(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> bool:
     """Whether one of the fits explains most of the misfit, and what it leaves is above the noise: time is for a second
-    effect rather than for others in the place of this one."""
-    return leaves_some(case, first, before, min(fits, key=lambda fit: fit.total, default=before))
+    effect rather than for others in the place of this one, unless it is in a limit that is declared to be something
+    else."""
+    best = min(fits, key=lambda fit: fit.total, default=before)
+    return leaves_some(case, first, before, best) and not (best is not before and is_limited(best))
 
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

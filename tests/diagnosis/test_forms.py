@@ -246,3 +246,13 @@ def test_beside_what_follows_anything_all_that_scores_is_tried_in_every_form(mon
     shortlist = [most]
     forms.refit_other_forms(CASE, given, model, [most, bend], shortlist)
     assert ("saturation.cubic" in refitted) == tried == (bend in shortlist)
+
+
+@pytest.mark.parametrize(("left", "limited", "second"), [(5.0, False, True), (5.0, True, False), (1.0, False, False)])
+def test_no_second_effect_is_sought_beside_one_in_a_limit_in_which_it_is_something_else(
+    monkeypatch, left, limited, second
+):
+    """A second mode that is the main one left 16 of 47 noise floors, and a delay, which was there, 11."""
+    monkeypatch.setattr(forms, "is_limited", lambda fit: limited)
+    before = fit(20.0, 20.0)
+    assert forms.second_missing(CASE, before, before, [fit(left, left, ["resonance"])]) == second
