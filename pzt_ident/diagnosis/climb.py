@@ -189,11 +189,13 @@ def next_steps(
     candidate: Candidate | None,
     known: Sequence[Fit] = (),
 ) -> list[Step]:
-    """The candidate, or what leads farther where no effect helps a fit that rests astray, but not to a known one;
-    without a candidate a pair of effects, else an effect whose fit is restarted, else, once in a path, an effect in the
-    place of another. Ahead of these an effect behind another form of what was added before. Empty where the path
-    ends."""
+    """Two effects that account for all; else the candidate, or what leads farther where no effect helps a fit that
+    rests astray, but not to a known one; without a candidate a pair of effects, else an effect whose fit is restarted,
+    else, once in a path, an effect in the place of another. Ahead of these an effect behind another form of what was
+    added before. Empty where the path ends."""
     now = steps[-1].fit
+    if diagnosis.account and diagnosis.before is now and candidate is diagnosis.best:
+        return steps_to(case, now, diagnosis.account)
     if behind := exchange_behind(case, first, now, diagnosis.fits):
         return behind
     if candidate is not None and candidate.fit is not None:
@@ -233,11 +235,14 @@ def other_ways(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> Iterat
 
 
 def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
-    """Two effects that hide each other, as two steps, the one that fits better alone first."""
+    """The steps to two effects that hide each other."""
     pairs = (find(case, first, now, diagnosis.candidates) for find in (pair_behind, best_pair))
     both = next(filter(None, pairs), None)
-    if both is None:
-        return []
+    return steps_to(case, now, both) if both else []
+
+
+def steps_to(case: Case, now: Fit, both: Fit) -> list[Step]:
+    """The steps to a fit with two more effects, the one that fits better alone first."""
     values = {name: value for name, value in both.values.items() if name not in now.problem.names}
     alone = [refit(case, now, (*now.effects, word), values) for word in both.effects[-2:]]
     single = min(alone, key=lambda fit: fit.total)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import stage
+from made_fits import CASE, fit
 from pzt_ident.diagnosis import climb, exchange, scores, staircase
 from pzt_ident.diagnosis.budget import EXPLORING, Budget
 from pzt_ident.diagnosis.case import Case
@@ -232,6 +233,25 @@ def test_two_effects_that_explain_half_each_are_added_together(monkeypatch):
     diagnosis = diagnose(case, first)
     steps = climb.next_steps(case, first, [Step(first)], diagnosis, diagnosis.best)
     assert {step.added for step in steps} == {"quadratic_gain", "creep"}
+
+
+@pytest.mark.parametrize("first_again", [True, False])
+def test_a_path_begins_with_the_two_effects_that_account_for_all(monkeypatch, first_again):
+    """A coupling and a spring were at 1.08 noise floors; beside the coupling alone a memory scored more than the
+    spring. The other paths of the model begin with another effect."""
+    now, both = fit(12.0, 12.0), fit(1.0, 1.0, ("creep", "friction"))
+    best, other = (Candidate(Score(word), fit(4.0, 4.0, [word]), "missing") for word in ("creep", "drift"))
+    best.account = both
+    left = {"creep": 4.0, "friction": 3.0}
+    monkeypatch.setattr(
+        climb, "refit", lambda case, now, effects, values: fit(left[effects[-1]], left[effects[-1]], effects)
+    )
+    monkeypatch.setattr(climb, "exchange_behind", lambda *arguments: [])
+    monkeypatch.setattr(climb, "is_astray", lambda *arguments: False)
+    diagnosis = Diagnosis("missing", "", now, [best, other], ["creep"])
+    steps = climb.next_steps(CASE, now, [Step(now)], diagnosis, best if first_again else other)
+    assert [step.added for step in steps] == (["friction", "creep"] if first_again else ["drift"])
+    assert (steps[-1].fit is both) == first_again
 
 
 @pytest.mark.parametrize("kept", [True, False])
