@@ -12,8 +12,20 @@ from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.contained import join_look_alikes, separate_accounts
-from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, forms_instead, remove_unneeded
+from pzt_ident.diagnosis.criteria import (
+    DECISIVE,
+    FAR,
+    adequate,
+    clears_an_axis,
+    removed_rms,
+    removes_enough,
+)
+from pzt_ident.diagnosis.exchange import (
+    exchange_accounts,
+    exchange_any,
+    forms_instead,
+    remove_unneeded,
+)
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate, unconfirmed
 from pzt_ident.diagnosis.merging import merge_effects
@@ -25,7 +37,7 @@ from pzt_ident.diagnosis.scores import promises_most
 from pzt_ident.diagnosis.starts import at_a_glance, best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
-from pzt_ident.diagnosis.unmeasured import OWN, freed_mechanics
+from pzt_ident.diagnosis.unmeasured import mechanics_of_each_axis
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, pair_behind
 from pzt_ident.diagnosis.within_bounds import are_to_blame
 from pzt_ident.model.registry import blocks, word_of
@@ -87,9 +99,9 @@ def climb(
             return None
         take(new)
         for find in (wider_bounds, mechanics_of_each_axis):
-            if (changed := find(case, first, steps[-1].fit)) and changed.case:
-                case = changed.case
-                take([changed])
+            if changed := find(case, first, steps[-1].fit):
+                case = changed[-1].case or case
+                take(changed)
         if not adequate(case, first, steps[-1].fit) and not case.budget.allows("more effects", PROVING):
             break
         diagnosis = diagnose(case, steps[-1].fit, first)
@@ -128,22 +140,16 @@ def joins(case: Case, fit: Fit, known: Sequence[Fit]) -> bool:
     return any(removed_rms(other.total, fit.total) < TIE * case.floor for other in same)
 
 
-def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
+def wider_bounds(case: Case, first: Fit, fit: Fit) -> list[Step]:
     """The step to wider bounds, where those that a fit rests on are too narrow and the wider ones hold its estimates:
     an effect would only stand in for what they keep out."""
     beyond = None if adequate(case, first, fit) else beyond_bounds(case, first, fit)
     if beyond is None:
-        return None
+        return []
     wide, after = beyond
     if stands_in(wide, case, after) or not are_to_blame(case, wide, fit, after):
-        return None
-    return Step(after, explained=explained_share(case, fit, after), change=WIDER, case=wide)
-
-
-def mechanics_of_each_axis(case: Case, first: Fit, fit: Fit) -> Step | None:
-    """The step to mechanics of their own of axes without a response, where that is most of what a coupling leaves."""
-    freed = None if adequate(case, first, fit) else freed_mechanics(case, fit)
-    return freed and Step(freed[1], explained=explained_share(case, fit, freed[1]), change=OWN, case=freed[0])
+        return []
+    return [Step(after, explained=explained_share(case, fit, after), change=WIDER, case=wide)]
 
 
 def stuck(steps: list[Step]) -> bool:

@@ -58,14 +58,16 @@ def lean_or_begun(
 ) -> tuple[Staircase | None, Begun | None]:
     """The staircase without mechanics that the data do not show, None where the first path with them alone reaches
     the noise, or as of `alternative_to`; and that path, None where it was not begun. Where two effects account for all
-    with the mechanics and not without, that path is the first. diagnosis: of the fit `first`."""
+    with the mechanics and not without, that path is the first, and the only one where the data show the mechanics at
+    its end. diagnosis: of the fit `first`."""
     alternative = alternative_to(case, first, diagnosis)
     if alternative is None:
         return None, None
     begun, lean = None, begin_alike(case, first, alternative, diagnosis, on_step)
     if diagnosis.account and lean is None:
         begun = begin(case, [Step(first)], on_step, diagnosis)
-        if reaches(begun) and not case.budget.allows("effects without the mechanics"):
+        shown = reaches(begun) and unseen_mechanics(begun.path.end) is None
+        if shown or (reaches(begun) and not case.budget.allows("effects without the mechanics")):
             return None, begun
     lean = lean or begin_lean(case, first, alternative, on_step)
     if begun is None and not lean.settled and case.budget.allows("effects beside the mechanics"):

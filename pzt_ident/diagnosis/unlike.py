@@ -15,14 +15,13 @@ from pzt_ident.diagnosis.unmeasured import (
     OWN,
     OWN_LOOPS,
     coupled,
+    is_coupling,
     own_hysteresis,
     own_mechanics,
     with_own_hysteresis,
     with_own_mechanics,
 )
 from pzt_ident.diagnosis.verdict import Diagnosis
-from pzt_ident.model.block import Coupling
-from pzt_ident.model.registry import blocks
 
 UNLIKE = "axes without a response that are unlike the others"
 
@@ -31,7 +30,7 @@ def own_at_once(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListe
     """The staircase where axes without a response have a resonance of their own, if a coupling leads to the noise with
     that alone; None elsewhere, and where the best effect is no coupling, or one that leads there as it is."""
     best = diagnosis.best.fit if diagnosis.best else None
-    settled = best and (adequate(case, first, best) or not issubclass(blocks[best.effects[-1]], Coupling))
+    settled = best and (adequate(case, first, best) or not is_coupling(best.effects[-1]))
     if settled or diagnosis.verdict in SETTLED or not own_mechanics(case):
         return None
     if not case.budget.allows(UNLIKE):
@@ -48,7 +47,7 @@ def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener)
     arrived = given.last.verdict == "adequate"
     added = given.end.effects[len(first.effects) :]
     tried = added if arrived else [step.added for step in given.steps if step.added]
-    beside = any(issubclass(blocks[effect], Coupling) for effect in tried)
+    beside = any(map(is_coupling, tried))
     if arrived and not (beside and len(added) > 1):
         return None
     for change, free, alternative in (

@@ -10,12 +10,14 @@ import numpy as np
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE
+from pzt_ident.diagnosis.criteria import DECISIVE, NEAR, adequate
+from pzt_ident.diagnosis.exchange import exchange_step, fits_in_place
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import scorer_of
+from pzt_ident.diagnosis.step import Step, effects_without, explained_share
 from pzt_ident.model.block import Coupling, Place
 from pzt_ident.model.registry import blocks
 
@@ -56,17 +58,21 @@ def found_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
 def coupled(case: Case, fit: Fit) -> Iterator[Fit]:
     """A fit with each coupling that a model can have, in its first form."""
     scorer = scorer_of(case, fit)
-    for word in applicable(case, fit.effects):
-        if issubclass(blocks[word], Coupling):
-            score = scorer.score(word)
-            yield refit_from(case, fit, (*fit.effects, score.effect), score.guesses)
+    for word in filter(is_coupling, applicable(case, fit.effects)):
+        score = scorer.score(word)
+        yield refit_from(case, fit, (*fit.effects, score.effect), score.guesses)
+
+
+def is_coupling(effect: str) -> bool:
+    """Whether an effect is one of another axis."""
+    return issubclass(blocks[effect], Coupling)
 
 
 def freed_mechanics(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
     """The case in which stiffness and damping of each axis without a response are free, and a fit with a coupling gone
     on with in it, where that removes most of what it leaves; else None. Beside other effects a coupling may show what
     it does not show alone."""
-    free = own_mechanics(case) if any(issubclass(blocks[effect], Coupling) for effect in fit.effects) else {}
+    free = own_mechanics(case) if any(map(is_coupling, fit.effects)) else {}
     if not free:
         return None
     own = case.with_specs(free)
@@ -79,6 +85,29 @@ def freed_mechanics(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
     point = own.descend(problem, problem.unit_point(values))
     freed = fit_at(fit.effects, problem, point, fit.converged, fit.measured_only)
     return (own, freed) if share_explained(fit.total, freed.total, case.floor) >= DECISIVE else None
+
+
+def mechanics_of_each_axis(case: Case, first: Fit, fit: Fit) -> list[Step]:
+    """The steps to mechanics of their own of axes without a response, where that is most of what a coupling leaves, or
+    of what another coupling leaves in its place."""
+    if adequate(case, first, fit):
+        return []
+    for coupling in (fit, *in_other_couplings(case, fit)):
+        if freed := freed_mechanics(case, coupling):
+            own, after = freed
+            there = Step(after, explained=explained_share(case, coupling, after), change=OWN, case=own)
+            gone = [effect for effect in fit.effects if effect not in coupling.effects]
+            return [*(exchange_step(case, fit, coupling, effect) for effect in gone), there]
+    return []
+
+
+def in_other_couplings(case: Case, fit: Fit) -> Iterator[Fit]:
+    """A fit near the noise of its records with another coupling in the place of one: which of them it is shows in the
+    resonance of an axis, which such a fit may give to the others."""
+    near = fit.identify <= NEAR * case.floor and bool(own_mechanics(case))
+    for effect in filter(is_coupling, fit.effects if near else ()):
+        others = applicable(case, effects_without(fit, effect))
+        yield from fits_in_place(case, fit, effect, [word for word in others if is_coupling(word)])
 
 
 def resonances(values: dict[str, float], name: str, free: Widened) -> list[dict[str, float]]:
@@ -97,7 +126,7 @@ def resonant(values: dict[str, float], name: str, factor: float) -> dict[str, fl
 def promise_of_coupling(case: Case, fit: Fit) -> float:
     """The share of the misfit that a coupling would explain by its score."""
     scorer, words = scorer_of(case, fit), applicable(case, fit.effects)
-    return max((scorer.score(word).explained for word in words if issubclass(blocks[word], Coupling)), default=0.0)
+    return max((scorer.score(word).explained for word in words if is_coupling(word)), default=0.0)
 
 
 def own_mechanics(case: Case) -> dict[str, Widened]:

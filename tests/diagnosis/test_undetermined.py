@@ -223,10 +223,15 @@ def test_mechanics_that_ring_in_no_record_are_tried_without_like_those_that_the_
     assert bool(begun) != seen
 
 
-@pytest.mark.parametrize(("alike", "lasts"), [(True, True), (False, True), (False, False)])
-def test_two_effects_that_account_for_all_beside_mechanics_are_tried_without_these_at_once(monkeypatch, alike, lasts):
+@pytest.mark.parametrize(
+    ("alike", "shown", "lasts"),
+    [(True, False, True), (False, False, True), (False, False, False), (False, True, True)],
+)
+def test_two_effects_that_account_for_all_beside_mechanics_are_tried_without_these_at_once(
+    monkeypatch, alike, shown, lasts
+):
     """A path without mechanics is climbed for them only where they do not account for all there, behind the one with
-    them, if that leaves time."""
+    them, if that does not show the mechanics and leaves time."""
     case, climbed = slow(stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]), []
     case.ruled_out = tuple({*blocks.effects()} - {*POSSIBLE})
     first, begin = first_fit(case, 0), lean.begin
@@ -238,12 +243,13 @@ def test_two_effects_that_account_for_all_beside_mechanics_are_tried_without_the
         return begin(case, *more)
 
     monkeypatch.setattr(lean, "begin", counted)
+    monkeypatch.setattr(lean, "unseen_mechanics", lambda fit: None if shown and len(fit.effects) > 1 else "lumped")
     if not alike:
         adequate = lean.adequate
         monkeypatch.setattr(lean, "adequate", lambda case, *fits: case.words == BLOCKS and adequate(case, *fits))
         monkeypatch.setattr(case.budget, "allows", lambda what, *share: lasts or "without" not in what)
     found, begun = lean.lean_or_begun(case, first, diagnosis, lambda step: None)
-    assert climbed == ([] if alike else [BLOCKS, ("bouc_wen",)] if lasts else [BLOCKS])
-    assert (found is not None) == lasts and (begun is not None) == (not alike)
+    assert climbed == ([] if alike else [BLOCKS, ("bouc_wen",)] if lasts and not shown else [BLOCKS])
+    assert (found is not None) == (lasts and not shown) and (begun is not None) == (not alike)
     end = found.end if found else begun.path.end
     assert {*end.effects} == {"creep", "quadratic_gain"}

@@ -7,7 +7,8 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import staircase
+from made_fits import CASE, fit
+from pzt_ident.diagnosis import staircase, unmeasured
 from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import climb
@@ -109,6 +110,36 @@ def test_a_path_goes_on_with_the_mechanics_of_each_axis_that_its_coupling_shows(
     path = climb(case, [Step(first)], diagnose(case, first), taken, lambda step: None)
     assert [step.change for step in path.steps] == ["", "", OWN] and path.last.verdict == "adequate"
     assert path.case.specs.keys() - case.specs.keys() == own_mechanics(case).keys()
+
+
+@pytest.mark.parametrize(
+    ("left", "shown_by", "steps"),
+    [
+        (1.2, ("cross_coupling",), [(None, None)]),
+        (1.2, ("kinematic_coupling",), [("kinematic_coupling", "cross_coupling"), (None, None)]),
+        (2.0, ("kinematic_coupling",), []),
+        (1.2, (), []),
+    ],
+)
+def test_near_the_noise_another_coupling_may_show_the_mechanics_of_an_axis(monkeypatch, left, shown_by, steps):
+    """A coupling and a slew limit left 1.1 noise floors of the records that were fitted and 7.2 of the others; that of
+    the readings, which had left as much, 0.9 of both with a resonance of y."""
+    now, own = fit(left, 7.2, ["cross_coupling", "slew_limit"]), object()
+    other = fit(left, 7.2, ["slew_limit", "kinematic_coupling"])
+
+    def freed(case, fit):
+        return (own, replace(fit, identify=1.0, validate=1.0)) if {*shown_by} & {*fit.effects} else None
+
+    monkeypatch.setattr(unmeasured, "freed_mechanics", freed)
+    monkeypatch.setattr(unmeasured, "own_mechanics", lambda case: {"y.lumped.stiffness": None})
+    monkeypatch.setattr(unmeasured, "applicable", lambda case, effects: ["kinematic_coupling", "creep"])
+    monkeypatch.setattr(
+        unmeasured, "fits_in_place", lambda case, fit, effect, items: [other for item in items if item in other.effects]
+    )
+    found = unmeasured.mechanics_of_each_axis(CASE, fit(20.0, 20.0), now)
+    assert [(step.added, step.removed) for step in found] == steps
+    assert [step.case for step in found[-1:]] == [own] * bool(steps)
+    assert unmeasured.mechanics_of_each_axis(CASE, fit(20.0, 20.0), fit(1.0, 1.0, ["cross_coupling"])) == []
 
 
 @pytest.mark.parametrize(
