@@ -19,6 +19,7 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import (
     AS_LIKELY,
+    NEARLY_ALL,
     NOT_ALL,
     Candidate,
     drives_onto_bounds,
@@ -98,15 +99,25 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
-    """The model of two effects that is near the noise, or at that of the records which are fitted, of one that explains
-    most of these and one that promises most of the rest; None where there is none."""
+    """The model of two effects that accounts for all, of one that explains most of the records which are fitted and one
+    that promises most of the rest: the first near the noise, or else the best; None where there is none."""
     if adequate(case, first, fit) or share_explained(first.identify, fit.identify, case.floor) < DECISIVE:
         return None
+    fits = list[Fit]()
     for score in seconds_beside(case, first, fit):
-        both = refit_from(case, fit, (*fit.effects, score.effect), score.guesses)
-        if near_noise(case, first, both) or reaches_noise(case, first, both):
-            return both
-    return None
+        fits.append(refit_from(case, fit, (*fit.effects, score.effect), score.guesses))
+        if near_noise(case, first, fits[-1]):
+            return fits[-1]
+    return min((both for both in fits if accounts(case, first, both)), key=lambda both: both.total, default=None)
+
+
+def accounts(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit may be the way to all that is missing, which bounds of the job, the form of an effect or what only
+    other records show still keep it from: it is at the noise of the records that are fitted, or explains nearly all of
+    these and most of the others."""
+    pairs = (first.identify, fit.identify, NEARLY_ALL), (first.validate, fit.validate, DECISIVE)
+    most = all(share_explained(one, other, case.floor) >= least for one, other, least in pairs if one and other)
+    return reaches_noise(case, first, fit) or most
 
 
 def seconds_beside(case: Case, first: Fit, fit: Fit) -> list[Score]:
@@ -150,7 +161,8 @@ class Refits:
 
     def _may_stand(self, candidate: Candidate) -> bool:
         best = self.candidates[0]
-        if best.account is None and not any(adequate(self.case, self.first, fit) for fit in self.fits):
+        enough = [adequate(self.case, self.first, fit) for fit in self.fits]
+        if not any(enough) and not is_near(self.case, self.first, best.account):
             return True
         alike = are_look_alikes(best.score.effect, candidate.score.effect)
         return alike or candidate.score.explained >= NOT_ALL
@@ -167,6 +179,11 @@ class Refits:
         scores = candidate.forms if candidate.score.effect in self.in_every_form else some
         candidate.refits = refit_forms(self.case, self.before, scores, self.rival)
         return candidate
+
+
+def is_near(case: Case, first: Fit, account: Fit | None) -> bool:
+    """Whether there is a fit that accounts for all, and it is near the noise."""
+    return account is not None and near_noise(case, first, account)
 
 
 def refit_forms(case: Case, before: Fit, scores: Sequence[Score], rival: float) -> dict[str, Fit]:
@@ -220,7 +237,8 @@ def refit_the_rest(
     refit every other one in its first form, whatever it scores: what moves a model far, as a delay by a period of its
     mode, shows little along its slope. All that is refitted is added to the short list."""
     fits = [fit for candidate in shortlist for fit in candidate.refits.values()]
-    if before is not first or adequate(case, first, first) or any(item.account for item in shortlist):
+    accounted = any(is_near(case, first, item.account) for item in shortlist)
+    if before is not first or adequate(case, first, first) or accounted:
         return
     if any(explains_most(case, before, fit) for fit in fits):
         return

@@ -53,12 +53,23 @@ def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode
 
 
 def mechanics_at_second_mode(fit: Fit, given: Fit) -> tuple[tuple[str, ...], Values]:
-    """The effects of a fit without its second modes, and the parameters that the oscillator of another fit has there;
-    none where there is no second mode."""
-    modes, values = [*second_modes(fit.problem.model, values_of(fit))], values_of(given)
+    """The effects of a fit without its second modes, and the parameters that the mechanics of another fit have with
+    their nearest mode there; none where there is no second mode."""
+    modes = [*second_modes(fit.problem.model, values_of(fit))]
     words = {share.block.name for share, _ in modes}
-    moved = [oscillator_at(given, values, mode) for _, mode in modes]
+    moved = [nearest_mode_at(given, mode) for _, mode in modes]
     return tuple(item for item in fit.effects if word_of(item) not in words), dict(ChainMap(*moved))
+
+
+def nearest_mode_at(fit: Fit, there: Mode) -> Values:
+    """The free parameters of the mechanics with the nearest of their modes at a frequency and damping; of mechanics of
+    each axis, that of its axis."""
+    values = values_of(fit)
+    own = [mode for mode in modes_of(fit.problem.model, values) if mode.number or mode.axis == there.axis]
+    if not own:
+        return {}
+    nearest = min(own, key=lambda mode: abs(np.log(mode.frequency / there.frequency)))
+    return mode_at(fit, values, nearest._replace(frequency=there.frequency, damping=there.damping))
 
 
 def with_aliases(fit: Fit) -> list[Values]:

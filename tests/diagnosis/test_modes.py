@@ -11,7 +11,12 @@ from pzt_ident.diagnosis import exchange, forms
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.modes import mechanics_at_main_mode, with_aliases, with_modes_exchanged
+from pzt_ident.diagnosis.modes import (
+    mechanics_at_main_mode,
+    mechanics_at_second_mode,
+    with_aliases,
+    with_modes_exchanged,
+)
 from pzt_ident.diagnosis.refit import refit, start_of
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.second_mode import exchange_main_mode, exchange_second_mode
@@ -52,6 +57,19 @@ def test_a_refit_without_the_main_mode_starts_with_the_mechanics_there(form, fix
     assert found["lumped.mass"] == pytest.approx(mass)
     assert found["lumped.stiffness"] == pytest.approx(mass * MODE**2)
     assert found["lumped.damping"] == pytest.approx(2 * 0.02 * mass * MODE)
+
+
+@pytest.mark.parametrize(("frequency", "number"), [(430.0, 1), (1200.0, 2)])
+def test_a_second_mode_of_a_model_without_mechanics_is_the_nearest_of_these(frequency, number):
+    """A saturation beside a mode that the job has was a saturation and a second mode of a model without any: with two
+    modes as given, of which one rested on bounds, nothing had fitted."""
+    case = Case(("bouc_wen", MODAL), (), stage.records({}), stage.specs({"bouc_wen.gain": 0.08}))
+    modes = {"frequency_1": 400.0, "frequency_2": 1600.0, "damping_1": 0.02, "damping_2": 0.3}
+    given = fit_with(case, {f"modal.{word}": value for word, value in modes.items()}, "saturation")
+    without = fit_with(stage.case(), {"resonance.frequency": frequency, "resonance.damping": 0.05})
+    effects, there = mechanics_at_second_mode(without, given)
+    assert effects == ()
+    assert there == pytest.approx({f"modal.frequency_{number}": frequency, f"modal.damping_{number}": 0.05})
 
 
 @pytest.mark.parametrize("share", [0.5, -0.8])
