@@ -55,6 +55,7 @@ class Case:
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.wider: dict[Any, tuple[Case, Fit]] = {}  # fits gone on with beyond bounds, by slip, effects and point
         self.unlike: dict[Any, tuple[Case, Fit] | None] = {}  # with axes of their own mechanics, by effects and point
+        self.faults: dict[str, Fit] = {}  # fits of the model as given with a fault of the set-up, by its word
         self.scorers: list[Any] = []  # of the fits that were diagnosed last
         self.reshaped: Case | None = (
             None  # with drives that go otherwise between their samples, once that was asked for

@@ -53,10 +53,12 @@ class Fault:
 
 def faults_of(case: Case, first: Fit, share: float = WHOLE) -> Iterator[tuple[str, Fit]]:
     """The faults that score, each with the fit of the model as given with it, the best first, from elsewhere too where
-    that explains most and is not at the noise, as long as less than a share of the budget is spent."""
+    that explains most and is not at the noise, as long as less than a share of the budget is spent. Where all of it is,
+    those that are known."""
     fits = dict[str, Fit]()
     for word in applicable(case, first.effects, in_setup=True):
         if not case.budget.allows("faults of the set-up", WHOLE):
+            fits = case.faults | fits
             break
         score = scorer_of(case, first).score(word)
         if score.explained > LIKELY:
@@ -64,7 +66,8 @@ def faults_of(case: Case, first: Fit, share: float = WHOLE) -> Iterator[tuple[st
     for word in sorted(fits, key=lambda word: fits[word].total):
         fit = fits[word]
         at_side = share_explained(first.total, fit.total, case.floor) >= DECISIVE and not adequate(case, first, fit)
-        yield word, restart(case, fit, share=share) if at_side else fit
+        case.faults[word] = restart(case, fit, share=share) if at_side else fit
+        yield word, case.faults[word]
 
 
 def fault_instead(case: Case, first: Fit, share: float = WHOLE) -> Staircase | None:

@@ -145,7 +145,9 @@ def test_a_fault_is_fitted_where_it_may_be_most_of_what_is_missing(monkeypatch, 
     monkeypatch.setattr(faults, "applicable", lambda case, effects, in_setup: ["backlash"])
     monkeypatch.setattr(faults, "scorer_of", lambda case, fit: scorer)
     monkeypatch.setattr(faults, "refit", lambda case, first, effects, guess: with_fault)
-    assert [word for word, _ in faults.faults_of(CASE, first)] == ["backlash"] * fitted
+    case = SimpleNamespace(**vars(CASE), faults={})
+    assert [word for word, _ in faults.faults_of(case, first)] == ["backlash"] * fitted
+    assert case.faults == ({"backlash": with_fault} if fitted else {})
 
 
 @pytest.mark.parametrize(
@@ -163,9 +165,22 @@ def test_faults_are_fitted_from_elsewhere_where_they_explain_most_and_the_best_f
     monkeypatch.setattr(faults, "scorer_of", lambda case, fit: SimpleNamespace(score=lambda word: Score(word, 1.0)))
     monkeypatch.setattr(faults, "refit", lambda case, first, effects, guess: fits[effects[-1]])
     monkeypatch.setattr(faults, "restart", lambda case, fit, share: restarted.append((*fit.effects, share)) or fit)
-    found = [word for word, _ in faults.faults_of(CASE, fit(12.0, 12.0), faults.AHEAD)]
+    case = SimpleNamespace(**vars(CASE), faults={})
+    found = [word for word, _ in faults.faults_of(case, fit(12.0, 12.0), faults.AHEAD)]
     assert sorted(found) == [*left] and found == sorted(left, key=left.get)
     assert restarted == [(word, faults.AHEAD) for word in elsewhere]
+
+
+def test_where_the_budget_is_spent_faults_are_those_that_are_known(monkeypatch):
+    """A dead zone that took up 96 % of a misfit was fitted first of all, and not told beside a memory of 90 %."""
+    known = {"dead_zone": fit(8.0, 9.0, ["dead_zone"]), "backlash": fit(5.0, 6.0, ["backlash"])}
+    case = SimpleNamespace(**{**vars(CASE), "budget": Budget(0.0)}, faults={**known})
+    monkeypatch.setattr(faults, "applicable", lambda case, effects, in_setup: [*known])
+    monkeypatch.setattr(faults, "restart", lambda case, fit, share: fit)
+    assert [*faults.faults_of(case, fit(40.0, 70.0))] == [
+        ("backlash", known["backlash"]),
+        ("dead_zone", known["dead_zone"]),
+    ]
 
 
 @pytest.mark.parametrize(
