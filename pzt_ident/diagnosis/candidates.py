@@ -132,6 +132,13 @@ def seconds_beside(case: Case, first: Fit, fit: Fit) -> list[Score]:
     return sorted(able, key=lambda score: (_follows_anything(score.effect), -score.explained_in_bounds))[:SECONDS]
 
 
+def drop_outdone_accounts(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
+    """Drop what two effects account for together where one does alone."""
+    if any(adequate(case, first, fit) for candidate in candidates for fit in candidate.refits.values()):
+        for candidate in candidates:
+            candidate.account = None
+
+
 class Refits:
     """The refits of a short list, one after the other: which of them are worth it depends on those before."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.candidates import (
     decide_by_score,
+    drop_outdone_accounts,
     promises_enough,
     refit_all,
     refit_the_rest,
@@ -110,6 +111,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     choose_forms(case, first, shortlist)
     shortlist += simpler_look_alikes(case, first, before, candidates, shortlist)
     restart_look_alikes(case, first, before, shortlist)
+    drop_outdone_accounts(case, first, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
     passing = [item for item in shortlist if item.fit and is_account(case, first, before, item.fit)]
@@ -166,17 +168,17 @@ def with_effects(
 
 
 def in_least_form(case: Case, best: Candidate, item: Candidate) -> bool:
-    """Whether a tied candidate has no more parameters than the best has, or is a look-alike that fits better by half
-    of what is a tie, or is tied in its first form, too, which it then means."""
-    if best.fit is None or item.fit is None or not generalises(item.fit, best.fit):
-        return True
-    if is_better(case, best.fit, item.fit) and are_look_alikes(best.score.effect, item.score.effect):
+    """Whether a tied candidate is no form of many more parameters than the best has, or is a look-alike that fits
+    better by half of what is a tie. Where its first form is tied, too, it means that."""
+    if best.fit is None or item.fit is None:
         return True
     usual = item.refits.get(item.forms[0].effect) if item.forms else None
-    if usual is None or generalises(usual, best.fit) or not is_tied(case, best.score.effect, best.fit, usual):
-        return False
-    item.take(item.forms[0].effect)
-    return True
+    simpler = usual is not None and item.fit.freedom > max(usual.freedom, best.fit.freedom)
+    if usual and simpler and is_tied(case, best.score.effect, best.fit, usual):
+        item.take(item.forms[0].effect)
+        return True
+    alike = are_look_alikes(best.score.effect, item.score.effect)
+    return not generalises(item.fit, best.fit) or (alike and is_better(case, best.fit, item.fit))
 
 
 def needed(case: Case, first: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:

@@ -271,6 +271,15 @@ def test_where_two_effects_account_for_all_only_what_may_do_so_alone_is_refitted
     assert len(shortlist) == len(made) and (made[0].account is not None) == bool(account)
 
 
+@pytest.mark.parametrize("alone", [1.0, 2.0])
+def test_two_effects_account_for_nothing_that_one_does_alone(alone):
+    """A memory and a bend were at the noise, before another form of the bend was there alone."""
+    memory = Candidate(Score("distributed_memory"), refits={"distributed_memory": fit(1.6, 1.4)}, account=fit(1.0, 1.0))
+    forms = {"quadratic_gain": fit(1.7, 1.5), "quadratic_gain.displacement": fit(alone, alone)}
+    candidates.drop_outdone_accounts(CASE, fit(4.0, 3.0), [memory, Candidate(Score("quadratic_gain"), refits=forms)])
+    assert (memory.account is None) == (alone == 1.0)
+
+
 @pytest.mark.usefixtures("unaccounted")
 @pytest.mark.parametrize(("damped", "anew"), [(3.6, "viscous_damping"), (3.7, "resonance")])
 def test_the_simplest_of_the_closest_is_refitted_where_it_leads_off_the_bounds_of_the_model(monkeypatch, damped, anew):

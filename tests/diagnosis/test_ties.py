@@ -61,6 +61,8 @@ def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["slew_limit"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)
+    assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=6), lag)
+    assert generalises(fit(1.0, effects=["sensor_lag.third_order"], dimensions=7), lag)
 
 
 def test_of_two_names_of_one_equation_that_nearer_to_the_reading_counts_unless_it_is_that_of_the_other():
