@@ -87,8 +87,9 @@ def is_better(case: Case, fit: Fit, rival: Fit) -> bool:
 
 
 def generalises(rival: Fit, fit: Fit) -> bool:
-    """Whether a rival fits in a form of more parameters than its first, which contains the other effect, or may: with
-    one more for each axis a filter of second order is no delay."""
-    contains = word_of(fit.effects[-1]) in blocks[rival.effects[-1]].contains
+    """Whether a rival fits in a form of more parameters than its first, which contains the other effect or a look-alike
+    of it, or may: with one more for each axis a filter of second order is no delay."""
+    own = word_of(fit.effects[-1])
+    contains = any(item == own or are_look_alikes(item, own) for item in blocks[rival.effects[-1]].contains)
     most = 0 if contains else max(1, len(fit.problem.model.measured))
     return form_of(rival.effects[-1]) is not None and rival.freedom - fit.freedom > most

@@ -25,6 +25,7 @@ from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks
 
 PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
+ONE_AXIS = SimpleNamespace(model=SimpleNamespace(measured=(0,)))
 
 
 def climbed(case):
@@ -418,7 +419,9 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
 def test_a_simpler_one_that_leaves_the_noise_is_tied_and_not_taken(monkeypatch, own, other, taken):
     words = "sensor_lag.second_order", "delay"
     now, simpler = (
-        SimpleNamespace(effects=("creep", word), total=total, identify=total, validate=None, freedom=freedom)
+        SimpleNamespace(
+            effects=("creep", word), total=total, identify=total, validate=None, freedom=freedom, problem=ONE_AXIS
+        )
         for word, total, freedom in zip(words, (own, other), (2, 1), strict=True)
     )
     fits = {"sensor_lag.second_order": [simpler]}
@@ -466,15 +469,16 @@ THIRD_ORDER = {"delay", "sensor_lag.third_order"}
 
 
 @pytest.mark.parametrize(
-    ("total", "freedom", "tied"), [(1.05, 2, {"delay"}), (1.05, 1, THIRD_ORDER), (1.5, 2, THIRD_ORDER)]
+    ("total", "freedom", "tied"), [(1.05, 3, {"delay"}), (1.05, 2, THIRD_ORDER), (1.5, 3, THIRD_ORDER)]
 )
 def test_a_form_that_may_contain_the_effect_is_no_exchange_but_a_tie_far_above_the_noise(
     monkeypatch, total, freedom, tied
 ):
-    """And one of no more parameters is a tie at the noise as well."""
+    """And one of one more parameter is a tie at the noise as well."""
 
     def fitted(item, total, freedom=1):
-        return SimpleNamespace(effects=("creep", item), total=total, identify=total, validate=None, freedom=freedom)
+        same = {"identify": total, "validate": None, "problem": ONE_AXIS}
+        return SimpleNamespace(effects=("creep", item), total=total, freedom=freedom, **same)
 
     now, worse = fitted("delay", total), fitted("creep", 9)
     better = fitted("sensor_lag.third_order", total - 0.002, freedom)

@@ -59,6 +59,9 @@ def test_a_form_that_contains_a_look_alike_does_not_tie_another_form_with_it(wor
 def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     lag = fit(1.0, effects=["amplifier_lag"], dimensions=5)
     assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
+    assert generalises(
+        fit(1.0, effects=["slew_limit.lag"], dimensions=6), fit(1.0, effects=["sensor_lag"], dimensions=5)
+    )
     assert not generalises(fit(1.0, effects=["slew_limit"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)
     assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=6), lag)
