@@ -32,6 +32,28 @@ class Interrupted(click.ClickException):
     exit_code = 130
 
 
+RESULTS = "results, which `pzt-ident run` and `pzt-ident improve` write"
+WHAT_IS_MISSING = {
+    "JOB": "A job file: `pzt-ident init DIR` writes an example, `pzt-ident workbench DATA` makes one of measurements.",
+    "JOB-or-DIR": f"A job file, or a folder of {RESULTS}.",
+    "init DIR": "The folder to write into, which may be new.",
+    "DIR": f"A folder of {RESULTS}.",
+    "DIR...": f"Folders of {RESULTS}.",
+    "RESULT": f"A folder of {RESULTS}.",
+    "NAME": "A word or a key of a job: `pzt-ident list` has the words, `pzt-ident list keys` the keys.",
+    "EFFECT": "The word of an effect: `pzt-ident list effects` has them all.",
+    "PATTERN...": "Folders, files or a table of devices, which `pzt-ident fleet` describes.",
+    "BLOCK...": "Words of blocks: `pzt-ident list blocks` has them all.",
+}  # by what the usage of a command calls it
+
+
+def said_missing(error: click.MissingParameter) -> str:
+    """What the argument is that was not given, and where it comes from."""
+    name = error.param.human_readable_name if error.param else ""
+    command = error.ctx.info_name if error.ctx else ""
+    return WHAT_IS_MISSING.get(f"{command} {name}", WHAT_IS_MISSING.get(name, ""))
+
+
 class Group(click.Group):
     """Prints an error as one line. Exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
 
@@ -57,6 +79,9 @@ class Group(click.Group):
         warnings.formatwarning = lambda message, *location, **options: f"Warning: {message}\n"
         try:
             return super().invoke(ctx)
+        except click.MissingParameter as error:
+            said = error.message or said_missing(error)
+            raise click.MissingParameter(said, error.ctx, error.param, error.param_hint, error.param_type) from None
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except InputError as error:

@@ -10,6 +10,7 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
@@ -512,6 +513,16 @@ class TestErrors:
         result = call(*arguments)
         assert result.exit_code == 2
         assert message in result.stderr
+
+    @pytest.mark.parametrize("name", main.commands)
+    def test_what_is_missing_is_said_with_where_it_comes_from(self, name):
+        """A stranger asked `show` without a word, and read that NAME is missing."""
+        needed = [item for item in main.commands[name].params if isinstance(item, click.Argument) and item.required]
+        for number, argument in enumerate(needed):
+            result = call(name, *["given"] * number)
+            assert result.exit_code == 2
+            missing = f"Missing argument '{argument.human_readable_name}'. "
+            assert missing in result.stderr and result.stderr.split(missing)[1].strip().endswith(".")
 
 
 def start(*arguments: str, **options) -> subprocess.CompletedProcess:
