@@ -108,10 +108,10 @@ def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
         fits.append(refit_from(case, fit, (*fit.effects, score.effect), score.guesses))
         if near_noise(case, first, fits[-1]):
             return fits[-1]
-    return min((both for both in fits if accounts(case, first, both)), key=lambda both: both.total, default=None)
+    return min((both for both in fits if may_account(case, first, both)), key=lambda both: both.total, default=None)
 
 
-def accounts(case: Case, first: Fit, fit: Fit) -> bool:
+def may_account(case: Case, first: Fit, fit: Fit) -> bool:
     """Whether a fit may be the way to all that is missing, which bounds of the job, the form of an effect or what only
     other records show still keep it from: it is at the noise of the records that are fitted, or explains nearly all of
     these and most of the others."""
