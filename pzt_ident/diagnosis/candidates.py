@@ -108,16 +108,19 @@ def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
         fits.append(refit_from(case, fit, (*fit.effects, score.effect), score.guesses))
         if near_noise(case, first, fits[-1]):
             return fits[-1]
-    return min((both for both in fits if may_account(case, first, both)), key=lambda both: both.total, default=None)
+    able = [both for both in fits if may_account(case, first, fit, both)]
+    return min(able, key=lambda both: both.total, default=None)
 
 
-def may_account(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether a fit may be the way to all that is missing, which bounds of the job, the form of an effect or what only
-    other records show still keep it from: it is at the noise of the records that are fitted, or explains nearly all of
-    these and most of the others."""
-    pairs = (first.identify, fit.identify, NEARLY_ALL), (first.validate, fit.validate, DECISIVE)
-    most = all(share_explained(one, other, case.floor) >= least for one, other, least in pairs if one and other)
-    return reaches_noise(case, first, fit) or most
+def may_account(case: Case, first: Fit, alone: Fit, both: Fit) -> bool:
+    """Whether two effects may be the way to all that is missing, which bounds of the job, the form of one or what only
+    other records show still keep them from: they are at the noise of the records that are fitted, or explain nearly all
+    of these and most of the others, and the second most of what the first leaves."""
+    nearly_all = share_explained(first.identify, both.identify, case.floor) >= NEARLY_ALL
+    if first.validate and both.validate:
+        nearly_all &= share_explained(first.validate, both.validate, case.floor) >= DECISIVE
+    most_of_rest = share_explained(alone.identify, both.identify, case.floor) >= DECISIVE
+    return reaches_noise(case, first, both) or (nearly_all and most_of_rest)
 
 
 def seconds_beside(case: Case, first: Fit, fit: Fit) -> list[Score]:
