@@ -53,8 +53,8 @@ class Fault:
 
 def faults_of(case: Case, first: Fit, share: float = WHOLE) -> Iterator[tuple[str, Fit]]:
     """The faults that score, each with the fit of the model as given with it, the best first, from elsewhere too where
-    that explains most and is not at the noise, as long as less than a share of the budget is spent. Where all of it is,
-    those that are known."""
+    that explains most and is not at the noise, as long as less than a share of the budget is spent. Where all of it is
+    spent, those that are known."""
     fits = dict[str, Fit]()
     for word in applicable(case, first.effects, in_setup=True):
         if not case.budget.allows("faults of the set-up", WHOLE):

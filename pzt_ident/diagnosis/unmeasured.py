@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 
@@ -92,7 +92,7 @@ def mechanics_of_each_axis(case: Case, first: Fit, fit: Fit) -> list[Step]:
     of what another coupling leaves in its place."""
     if adequate(case, first, fit):
         return []
-    for coupling in (fit, *in_other_couplings(case, fit)):
+    for coupling in chain([fit], in_other_couplings(case, fit)):
         if freed := freed_mechanics(case, coupling):
             own, after = freed
             there = Step(after, explained=explained_share(case, coupling, after), change=OWN, case=own)
