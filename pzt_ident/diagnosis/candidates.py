@@ -19,7 +19,6 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import (
     AS_LIKELY,
-    NEARLY_ALL,
     NOT_ALL,
     Candidate,
     drives_onto_bounds,
@@ -42,6 +41,7 @@ from pzt_ident.model.registry import blocks
 
 SHORTLIST = 6  # effects that are refitted
 SECONDS = 3  # effects that are tried as the second of two that account for all
+CLOSE = 2.0  # noise floors up to which two may account for all
 AS_CLOSE = 1.1  # times what the closest to the records which are fitted leaves: the simplest of these is meant
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -114,13 +114,11 @@ def account_beside(case: Case, first: Fit, fit: Fit) -> Fit | None:
 
 def may_account(case: Case, first: Fit, alone: Fit, both: Fit) -> bool:
     """Whether two effects may be the way to all that is missing, which bounds of the job, the form of one or what only
-    other records show still keep them from: they are at the noise of the records that are fitted, or explain nearly all
-    of these and most of the others, and the second most of what the first leaves."""
-    nearly_all = share_explained(first.identify, both.identify, case.floor) >= NEARLY_ALL
-    if first.validate and both.validate:
-        nearly_all &= share_explained(first.validate, both.validate, case.floor) >= DECISIVE
+    other records show still keep them from: they are at the noise of the records that are fitted, or not far from that
+    of all, and the second explains most of what the first leaves."""
+    close = max(both.identify, both.validate or 0.0) <= CLOSE * case.floor
     most_of_rest = share_explained(alone.identify, both.identify, case.floor) >= DECISIVE
-    return reaches_noise(case, first, both) or (nearly_all and most_of_rest)
+    return reaches_noise(case, first, both) or (close and most_of_rest)
 
 
 def seconds_beside(case: Case, first: Fit, fit: Fit) -> list[Score]:
