@@ -195,13 +195,14 @@ def next_steps(
     candidate: Candidate | None,
     known: Sequence[Fit] = (),
 ) -> list[Step]:
-    """Two effects that account for all; else the candidate, or what leads farther where no effect helps a fit that
-    rests astray, but not to a known one; without a candidate a pair of effects, else an effect whose fit is restarted,
-    else, once in a path, an effect in the place of another. Ahead of these an effect behind another form of what was
-    added before. Empty where the path ends."""
+    """Two effects that account for all, or the first where bounds are too narrow for it; else the candidate, or what
+    leads farther where no effect helps a fit that rests astray, but not to a known one; without a candidate a pair of
+    effects, else an effect whose fit is restarted, else, once in a path, an effect in the place of another. Ahead of
+    these an effect behind another form of what was added before. Empty where the path ends."""
     now = steps[-1].fit
     if diagnosis.account and diagnosis.before is now and candidate is diagnosis.best:
-        return steps_to(case, now, diagnosis.account)
+        both = steps_to(case, now, diagnosis.account)
+        return both[:1] if wider_bounds(case, first, both[0].fit) else both
     if behind := exchange_behind(case, first, now, diagnosis.fits):
         return behind
     if candidate is not None and candidate.fit is not None:

@@ -67,9 +67,9 @@ def test_nothing_is_exchanged_for_an_effect_in_a_declared_limit():
 
 @pytest.mark.parametrize(("left", "kept"), [(0.996, False), (0.99, True)])
 def test_a_form_that_may_contain_an_effect_at_the_noise_is_its_rival_where_it_fits_better(left, kept, monkeypatch):
-    """A reading of two poles may be all that a delay of one number stands for."""
+    """A reading of three poles may be all that a delay of one number stands for."""
     now = made_fits.fit(1.0, 1.0, ["cubic_stiffness", "delay"])
-    rival = made_fits.fit(left, left, ["cubic_stiffness", "sensor_lag.second_order"], dimensions=5)
+    rival = made_fits.fit(left, left, ["cubic_stiffness", "sensor_lag.third_order"], dimensions=6)
     monkeypatch.setattr(exchange, "look_alikes", lambda *arguments: ["sensor_lag"])
     monkeypatch.setattr(exchange, "fits_in_place", lambda *arguments, as_rivals: [rival])
     found = exchange.rivals_in_place(made_fits.CASE, now, "delay", (), in_every_form=True)

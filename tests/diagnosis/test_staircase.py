@@ -249,10 +249,14 @@ def test_a_path_begins_with_the_two_effects_that_account_for_all(monkeypatch, fi
     )
     monkeypatch.setattr(climb, "exchange_behind", lambda *arguments: [])
     monkeypatch.setattr(climb, "is_astray", lambda *arguments: False)
+    monkeypatch.setattr(climb, "wider_bounds", lambda *arguments: [])
     diagnosis = Diagnosis("missing", "", now, [best, other], ["creep"])
     steps = climb.next_steps(CASE, now, [Step(now)], diagnosis, best if first_again else other)
     assert [step.added for step in steps] == (["friction", "creep"] if first_again else ["drift"])
     assert (steps[-1].fit is both) == first_again
+    monkeypatch.setattr(climb, "wider_bounds", lambda case, first, fit: [Step(fit)])
+    steps = climb.next_steps(CASE, now, [Step(now)], diagnosis, best)
+    assert [step.added for step in steps] == ["friction"], "its bounds are widened first"
 
 
 @pytest.mark.parametrize("kept", [True, False])
