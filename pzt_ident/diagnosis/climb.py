@@ -12,20 +12,8 @@ from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.contained import join_look_alikes, separate_accounts
-from pzt_ident.diagnosis.criteria import (
-    DECISIVE,
-    FAR,
-    adequate,
-    clears_an_axis,
-    removed_rms,
-    removes_enough,
-)
-from pzt_ident.diagnosis.exchange import (
-    exchange_accounts,
-    exchange_any,
-    forms_instead,
-    remove_unneeded,
-)
+from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
+from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, forms_instead, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate, unconfirmed
 from pzt_ident.diagnosis.merging import merge_effects
