@@ -45,9 +45,9 @@ class Floor(NamedTuple):
 
 
 def noise_floor(records: list[Record], axis: int) -> Floor:
-    """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else short
-    windows. Where repeated records differ far more than a rest is noisy, the stage changed between them, which a model
-    may explain. Readings of a formula have none, for which a part of their range stands.
+    """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, rests that
+    are not scored, else short windows. Where repeated records differ far more than a rest is noisy, the stage changed
+    between them, which a model may explain. Readings of a formula have none, for which a part of their range stands.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
     larger: those that are clearly above the quietest are left out, and where those of the quietest quarter are not
@@ -62,11 +62,13 @@ def evident_floor(records: list[Record], axis: int) -> Floor:
     """The same by that evidence alone, 0 where the readings have no noise at all."""
     signals = [Signal(r.drive[:, r.settle :], r.response[axis, r.settle :], r.dt) for r in records]
     step = common_step([r.response[axis] for r in records])
-    repeats, still = floor_of_repeats(records, axis, step), floor_of_rests(signals, step)
+    repeats, still = floor_of_repeats(records, axis, step), floor_of_rests(signals, signals, step)
     if repeats and still and repeats.value > CHANGED * still.value:
         times = repeats.value / still.value
         return Floor(still.value, f"{still.source}; repeated records differ {times:.2g} times as much")
-    return repeats or still or floor_in_motion(signals, step)
+    whole = [Signal(r.drive, r.response[axis], r.dt) for r in records]
+    known = repeats or still or floor_of_periods(signals, step) or floor_of_rests(whole, signals, step)
+    return known or weak_floor(signals, step)
 
 
 def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | None:
@@ -79,10 +81,10 @@ def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | N
     return floor_of(with_quantiser(np.sqrt(np.mean(variances)), step), "repeated records", step)
 
 
-def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
+def floor_of_rests(resting: list[Signal], signals: list[Signal], step: float) -> Floor | None:
     """By rests; where all of them are short, so that they may hold lines, by what is quieter of these and the stage in
     motion. None where there are fewer than LONG samples of them."""
-    rests = [(rest, dt) for drives, response, dt in signals for rest in still_rests(drives, response)]
+    rests = [(rest, dt) for drives, response, dt in resting for rest in still_rests(drives, response)]
     if sum(rest.noise.size for rest, _ in rests) < LONG:
         return None
     seconds = np.array([rest.noise.size * dt for rest, dt in rests])
@@ -93,10 +95,17 @@ def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
 
 
 def floor_in_motion(signals: list[Signal], step: float) -> Floor:
-    """By repeated periods, else by two of them or in short windows."""
+    return floor_of_periods(signals, step) or weak_floor(signals, step)
+
+
+def floor_of_periods(signals: list[Signal], step: float) -> Floor | None:
+    """By repeated periods; None where there are none."""
     found = [(part, dt) for drives, response, dt in signals for part in period_noise(drives, response)]
-    if found:
-        return floor_by(found, "repeated periods", signals, step)
+    return floor_by(found, "repeated periods", signals, step) if found else None
+
+
+def weak_floor(signals: list[Signal], step: float) -> Floor:
+    """By two periods or in short windows."""
     return min(floor_of_two_periods(signals, step), floor_in_windows(signals, step))
 
 

@@ -226,6 +226,21 @@ def test_a_record_of_wide_band_says_nothing_of_the_noise_of_smooth_ones():
     assert noise_floor(records, 0).value == pytest.approx(1, rel=0.1)
 
 
+@pytest.mark.parametrize("memory", [0.0, 0.9])
+@pytest.mark.parametrize("scored_anew", [0, 200])
+def test_a_rest_that_is_not_scored_says_more_than_windows_and_less_than_periods(memory, scored_anew):
+    """Noise behind a lag, which windows take for signal; the stage rests ahead of the scored samples."""
+    sweep = 50 - 50 * np.cos(2 * np.pi * (np.arange(4000) / 1000) ** 1.2)
+    noise = lfilter([(1 - memory**2) ** 0.5], [1, -memory], white(4600))
+    ahead = [record(np.append(np.zeros(600), sweep), np.append(np.zeros(600), sweep) + noise, settle=600 + scored_anew)]
+    floor = noise_floor(ahead, 0)
+    assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
+    periods = 50 - 50 * np.cos(2 * np.pi * np.arange(4000) / 800)
+    louder = np.append(np.zeros(600), periods) + noise * np.repeat([1.0, 2.0], [600, 4000])
+    again = noise_floor([record(np.append(np.zeros(600), periods), louder, settle=600)], 0)
+    assert (again.source, again.value) == ("repeated periods", pytest.approx(2, rel=0.15))
+
+
 def test_the_start_of_a_rest_is_left_to_settle():
     drive, settling = rising(500, 3000), 1000 * np.exp(-np.arange(3000) / 50)
     response = np.append(np.zeros(500), settling) + white(3500)
