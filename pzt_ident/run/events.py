@@ -18,6 +18,7 @@ from pzt_ident.run.alone import occupied, taken
 
 Event = dict[str, Any]
 Listen = Callable[[Event], None]
+AS_GIVEN = "as given"  # the name of the step that a path begins with
 
 
 def nobody(event: Event) -> None:
@@ -55,7 +56,8 @@ def sentence(event: Mapping[str, Any], units: Mapping[str, str]) -> str:
     if event["event"] == "refitted":
         chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
         return f"refitted {chosen}: {error} {quantity(event['identify'], unit)}"
-    return f"{step_name(event)}: {error} {quantity(event['rmse']['identify'], unit)}"
+    again = event.get("path", 1) > 1 and step_name(event) == AS_GIVEN
+    return f"{step_name(event)}{', on another path' * again}: {error} {quantity(event['rmse']['identify'], unit)}"
 
 
 def verdict_line(verdict: str, reason: str) -> str:
@@ -69,7 +71,7 @@ def step_name(step: Mapping[str, Any]) -> str:
     form = f" ({step['form']})" if step.get("form") else ""
     added = f"+ {step['added']}{form}" if step["added"] else ""
     removed = f"- {step['removed']}" if step["removed"] else ""
-    return step.get("change") or " ".join(filter(None, (added, removed))) or "as given"
+    return step.get("change") or " ".join(filter(None, (added, removed))) or AS_GIVEN
 
 
 def explains(step: Mapping[str, Any]) -> bool:

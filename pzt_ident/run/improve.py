@@ -86,9 +86,9 @@ def worded(case: Case, event: Event) -> Event:
     return in_units | {"said": sentence(in_units, case.records[0].units)}
 
 
-def announce(case: Case, step: stairs.Step) -> None:
-    """Tell whoever follows the case of a stair."""
-    case.on_event({"event": "stair", "units": case.records[0].units, **stair(case, step)})
+def announce(case: Case, step: stairs.Step, path: int = 1) -> None:
+    """Tell whoever follows the case of a stair. path: the number of the path that it is on, beginning with 1."""
+    case.on_event({"event": "stair", "path": path, "units": case.records[0].units, **stair(case, step)})
 
 
 def announced(case: Case, first: Fit) -> Fit:
@@ -169,12 +169,13 @@ class SoFar:
     def __init__(self, job: Job, case: Case, folder: Path) -> None:
         self.job, self.case, self.folder = job, case, folder
         self.steps: list[stairs.Step] = []
-        self.least = np.inf
+        self.least, self.paths = np.inf, 0
 
     def __call__(self, step: stairs.Step) -> None:
-        announce(self.case, step)
         goes_on = step.added or step.removed or step.change
         self.steps = [*self.steps, step] if goes_on else [step]
+        self.paths += not goes_on
+        announce(self.case, step, self.paths)
         if step.fit.total < self.least:
             self.least = step.fit.total
             staircase = stairs.Staircase(self.steps, Diagnosis("unfinished", "", step.fit, [], []))

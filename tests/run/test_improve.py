@@ -372,7 +372,7 @@ def test_mechanics_that_the_last_model_does_without_are_not_in_the_improved_job(
 
 def test_the_best_account_so_far_goes_on_through_wider_bounds(monkeypatch):
     written = []
-    monkeypatch.setattr(improvement, "announce", lambda case, step: None)
+    monkeypatch.setattr(improvement, "announce", lambda case, step, path: None)
     monkeypatch.setattr(improvement, "improvement_of", lambda job, case, staircase, last: {"steps": staircase.steps})
     monkeypatch.setattr(improvement, "improved", lambda job, case, end, folder: end)
     monkeypatch.setattr(improvement, "write_improvement", lambda *content: written.append(content[1:]))
