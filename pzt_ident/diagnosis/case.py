@@ -56,6 +56,7 @@ class Case:
         self.wider: dict[Any, tuple[Case, Fit]] = {}  # fits gone on with beyond bounds, by slip, effects and point
         self.unlike: dict[Any, tuple[Case, Fit] | None] = {}  # with axes of their own mechanics, by effects and point
         self.faults: dict[str, Fit] = {}  # fits of the model as given with a fault of the set-up, by its word
+        self.shares: dict[str, float] = {}  # of the misfit as given that each effect alone explains, by its word
         self.scorers: list[Any] = []  # of the fits that were diagnosed last
         self.reshaped: Case | None = (
             None  # with drives that go otherwise between their samples, once that was asked for
@@ -86,7 +87,7 @@ class Case:
         other = Case(words, self.effects, records or self.records, specs, self.ruled_out, self.shared, self.on_event)
         if records is None:
             other._resampled = self._resampled
-        other.budget, other.caveat = self.budget, self.caveat
+        other.budget, other.caveat, other.shares = self.budget, self.caveat, self.shares
         other.error_scales, other.floor = self.error_scales, self.floor
         return other
 

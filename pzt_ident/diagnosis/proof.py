@@ -36,11 +36,13 @@ from pzt_ident.diagnosis.refit import change_if_too_coarse, refit
 from pzt_ident.diagnosis.spectral_line import is_own_line
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.diagnosis.suspect import Suspect
-from pzt_ident.diagnosis.ties import TIE, strangers
+from pzt_ident.diagnosis.ties import TIE, are_look_alikes, strangers
 from pzt_ident.model.registry import blocks, word_of
 
 ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
 SINGLE = 0.9  # of it, which one effect must remove that is alone
+WITHOUT_EQUAL = DECISIVE  # the same where no other effect but its look-alikes explains RIVALS of what it does
+RIVALS = 1 / 2
 OF_MANY = 0.95  # the same of one with many amounts, which take up a part of anything
 EACH = 1 / 2  # of that of the identification and of the validation records
 ALONE = 1 / 3  # of the misfit beside the others: what each of several must remove that leave no more than they may
@@ -55,21 +57,22 @@ def unproven(
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
     in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
-    removed ENOUGH of all records (SINGLE, or OF_MANY, if it is alone), or DECISIVE where the identification records are
-    at the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE
-    beside the others; of several that leave more than that each must remove more in proportion, and none is proven
-    where that is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect
-    takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error of one
-    period in a stroke: it stands for what it is like there, unless the model is adequate with it. Even then none may be
-    in a limit that is declared to be something else, or a low harmonic of the drive, or of another size in each record
-    where it is the device's; nor a line of few periods in the stroke unless the model is adequate. Beside an effect
-    that leaves its trace where its form is another one each must remove SINGLE, as if it were alone: a gain by the
-    swing beside a memory. A line of the spectrum that takes up all of its band is proven whatever is left elsewhere.
-    Nor may one take the place of the model's operator, whose loops are gone beside it, unless the model is adequate.
-    What takes up enough and only may be something else is a suspect beside which the others are judged: without it what
-    they take up is nothing; of those that remove little beside what is in a limit none is proven. What is proven on one
-    of several axes, and clear there, is proven, whatever another lacks. What is flexible is proven only where the model
-    is adequate with it, or if it removes SINGLE. None is proven by a model that is simulated too coarsely with it.
+    removed ENOUGH of all records (SINGLE, WITHOUT_EQUAL or OF_MANY, if it is alone), or DECISIVE where the
+    identification records are at the noise, and EACH of either kind of them, and each of the others half of the rest,
+    and each the share ALONE beside the others; of several that leave more than that each must remove more in
+    proportion, and none is proven where that is more than BESIDE. None may have rivals that fit as well and are not its
+    look-alikes: what any effect takes up is not that of one. And none may have a shape, or all its amounts, on a bound,
+    as a cyclic error of one period in a stroke: it stands for what it is like there, unless the model is adequate with
+    it. Even then none may be in a limit that is declared to be something else, or a low harmonic of the drive, or of
+    another size in each record where it is the device's; nor a line of few periods in the stroke unless the model is
+    adequate. Beside an effect that leaves its trace where its form is another one each must remove SINGLE, as if it
+    were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of its band is proven
+    whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are gone beside it,
+    unless the model is adequate. What takes up enough and only may be something else is a suspect beside which the
+    others are judged: without it what they take up is nothing; of those that remove little beside what is in a limit
+    none is proven. What is proven on one of several axes, and clear there, is proven, whatever another lacks. What is
+    flexible is proven only where the model is adequate with it, or if it removes SINGLE. None is proven by a model that
+    is simulated too coarsely with it.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
     if coarse := simulated_too_coarsely(case, first, now, known):
@@ -124,7 +127,7 @@ def taken_out(
     suspects, held, judged = list[Suspect](), list[str](), list[Suspect]()
     while added := now.effects[len(first.effects) :]:
         near, explained = near_noise(view, given, seen(now)), adequate(view, given, seen(now))
-        left = left_of_allowed(view, given, seen(now), added)
+        left = left_of_allowed(view, given, seen(now), added, rivals)
         judged = [doubt(now, item) for item in added if item not in held]
         doubted = [item for item in judged if item.is_doubtful or (item.on_bounds and not explained) or not near]
         suspected = [item for item in doubted if not item.is_line]
@@ -180,15 +183,36 @@ def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
     return min(equal, key=lambda item: (item.without.freedom, item.rank))
 
 
-def left_of_allowed(case: Case, first: Fit, now: Fit, added: Sequence[str]) -> float:
+def left_of_allowed(
+    case: Case, first: Fit, now: Fit, added: Sequence[str], rivals: Mapping[str, Collection[str]]
+) -> float:
     """What a fit leaves of the misfit as given, in multiples of what the effects added may leave: of all records
     together, or of the identification or of the validation records, whichever is more."""
-    above = (OF_MANY if is_of_many(added[0]) else SINGLE) if len(added) == 1 else ENOUGH
+    above = least_of_single(case, first, now, added[0], rivals) if len(added) == 1 else ENOUGH
     one, rest = DECISIVE if reaches_noise(case, first, now) else above, (1 - DECISIVE) ** (len(added) - 1)
     of_all = share_explained(first.total, now.total, case.floor)
     both = [(first.identify, now.identify), (first.validate, now.validate)]
     least = min(share_explained(before, after, case.floor) for before, after in both if before and after)
     return max((1 - of_all) / (1 - one), (1 - least) / (1 - EACH)) / rest
+
+
+def least_of_single(case: Case, first: Fit, now: Fit, effect: str, rivals: Mapping[str, Collection[str]]) -> float:
+    """The share of the misfit as given that an effect which is alone must remove."""
+    if is_of_many(effect):
+        return OF_MANY
+    share = share_explained(first.total, now.total, case.floor)
+    return WITHOUT_EQUAL if is_without_equal(case, [effect, *rivals.get(effect, ())], share) else SINGLE
+
+
+def is_without_equal(case: Case, alike: Sequence[str], share: float) -> bool:
+    """Whether an effect, the first of some that are alike here, has no equal in a share of the misfit as given: none
+    explains RIVALS of it but what looks like these, and nothing that follows any slow misfit does. One with amounts of
+    its own for each record might follow anything."""
+    if not case.shares or is_flexible(alike[0]) or blocks[alike[0]].amounts():
+        return False
+    kin = [*map(word_of, alike), *(word for word in case.shares if any(are_look_alikes(item, word) for item in alike))]
+    others = (explained for word, explained in case.shares.items() if word not in kin or is_flexible(word))
+    return max(others, default=0.0) < RIVALS * share
 
 
 def is_of_many(effect: str) -> bool:

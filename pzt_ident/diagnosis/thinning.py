@@ -174,7 +174,9 @@ def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | 
             whole = quieted(case) if any(record.denoise_drive for record in few.records) else case
             whole = reshaped(whole) if [record.smooth_drive for record in few.records] != as_given else whole
             homes[id(few)] = whole.with_words(few.words).with_specs(few.specs)
+            homes[id(few)].shares = few.shares
     home, steps = case, list[stairs.Step]()
+    case.shares = thin.shares
     for step in staircase.steps:
         home = homes[id(step.case)] if step.case else home
         fit = on_all(home, step.fit)

@@ -112,12 +112,21 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     shortlist += simpler_look_alikes(case, first, before, candidates, shortlist)
     restart_look_alikes(case, first, before, shortlist)
     drop_outdone_accounts(case, first, shortlist)
+    if before is first:
+        case.shares = {word_of(item.score.effect): share_alone(case, first, item) for item in candidates}
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
     passing = [item for item in shortlist if item.fit and is_account(case, first, before, item.fit)]
     if not passing:
         return without_effect(case, first, before, candidates)
     return with_effects(case, first, before, candidates, passing)
+
+
+def share_alone(case: Case, first: Fit, candidate: Candidate) -> float:
+    """The share of the misfit as given that an effect explains: by its refits, else by its score."""
+    if not candidate.refits:
+        return candidate.score.explained_in_bounds
+    return share_explained(first.total, candidate.best.total, case.floor)
 
 
 def is_account(case: Case, first: Fit, before: Fit, fit: Fit) -> bool:

@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
-CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE)
+CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE, shares={})
 
 
 def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **declared):
@@ -121,6 +121,31 @@ def test_one_removes_90_percent_of_what_there_was_and_two_together_seven_eighths
     assert taken_out(of(a=9.6, none=30.0)) == ["a"]
     assert taken_out(of(ab=10.6, a=13.0, b=13.5, none=30.0)) == []
     assert taken_out(of(ab=10.7, a=13.0, b=13.5, none=30.0)) == ["b", "a"]
+
+
+@pytest.mark.parametrize(
+    ("effect", "left", "others", "suspects"),
+    [
+        ("delay", 17.0, {"rate_dependence": 0.3, "sensor_lag": 0.68}, []),  # two thirds, and nothing else explains 0.34
+        ("delay", 17.0, {"rate_dependence": 0.4}, ["delay"]),
+        ("delay", 22.0, {"rate_dependence": 0.1}, ["delay"]),  # less than half
+        ("delay", 17.0, {}, ["delay"]),  # nothing is known of others
+        ("creep", 17.0, {"drift": 0.6}, ["creep"]),  # its look-alike follows any slow misfit
+        ("periodic_disturbance", 17.0, {"creep": 0.1}, ["periodic_disturbance"]),  # has amounts of each record
+    ],
+)
+def test_one_without_equal_removes_half(taken_out, monkeypatch, effect, left, others, suspects):
+    monkeypatch.setattr(CASE, "shares", others)
+    monkeypatch.setattr(proof, "differs_by_record", lambda effect: False)
+    seen = {frozenset([effect]): left, frozenset(): 30.0}
+    assert taken_out(seen, flexible=["drift"]) == suspects
+
+
+def test_what_is_alike_to_a_tied_effect_is_no_equal(taken_out, monkeypatch):
+    monkeypatch.setattr(CASE, "shares", {"resonance": 0.6})
+    seen = {frozenset(["delay"]): 17.0, frozenset(): 30.0}
+    assert taken_out(seen, rivals={"delay": ["delay", "sensor_lag"]}) == []
+    assert taken_out(seen, rivals={"delay": ["delay"]}) == ["delay"]
 
 
 def test_one_with_many_amounts_removes_95_percent_if_it_is_alone(taken_out):
