@@ -43,6 +43,7 @@ ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the firs
 SINGLE = 0.9  # of it, which one effect must remove that is alone
 WITHOUT_EQUAL = DECISIVE  # the same where no other effect but its look-alikes explains RIVALS of what it does
 RIVALS = 1 / 2
+AS_MUCH = 0.9  # of what an effect explains: a look-alike that explains more may as well be meant
 OF_MANY = 0.95  # the same of one with many amounts, which take up a part of anything
 EACH = 1 / 2  # of that of the identification and of the validation records
 ALONE = 1 / 3  # of the misfit beside the others: what each of several must remove that leave no more than they may
@@ -206,11 +207,13 @@ def least_of_single(case: Case, first: Fit, now: Fit, effect: str, rivals: Mappi
 
 def is_without_equal(case: Case, alike: Sequence[str], share: float) -> bool:
     """Whether an effect, the first of some that are alike here, has no equal in a share of the misfit as given: none
-    explains RIVALS of it but what looks like these, and nothing that follows any slow misfit does. One with amounts of
-    its own for each record might follow anything."""
+    explains RIVALS of it but what looks like these, or like a look-alike that explains as much, and nothing that
+    follows any slow misfit does. One with amounts of its own for each record might follow anything."""
     if not case.shares or is_flexible(alike[0]) or blocks[alike[0]].amounts():
         return False
-    kin = [*map(word_of, alike), *(word for word in case.shares if any(are_look_alikes(item, word) for item in alike))]
+    as_much = [word for word, explained in case.shares.items() if explained >= AS_MUCH * share]
+    names = {*map(word_of, alike), *(word for word in as_much if are_look_alikes(alike[0], word))}
+    kin = names | {word for word in case.shares if any(are_look_alikes(name, word) for name in names)}
     others = (explained for word, explained in case.shares.items() if word not in kin or is_flexible(word))
     return max(others, default=0.0) < RIVALS * share
 

@@ -141,11 +141,16 @@ def test_one_without_equal_removes_half(taken_out, monkeypatch, effect, left, ot
     assert taken_out(seen, flexible=["drift"]) == suspects
 
 
-def test_what_is_alike_to_a_tied_effect_is_no_equal(taken_out, monkeypatch):
-    monkeypatch.setattr(CASE, "shares", {"resonance": 0.6})
+@pytest.mark.parametrize(
+    ("tied", "lag", "suspects"),
+    [(["delay", "sensor_lag"], 0.1, []), (["delay"], 0.66, []), (["delay"], 0.6, ["delay"])],
+)
+def test_what_is_alike_to_a_tied_effect_or_one_that_explains_as_much_is_no_rival(
+    taken_out, monkeypatch, tied, lag, suspects
+):
+    monkeypatch.setattr(CASE, "shares", {"resonance": 0.6, "sensor_lag": lag})
     seen = {frozenset(["delay"]): 17.0, frozenset(): 30.0}
-    assert taken_out(seen, rivals={"delay": ["delay", "sensor_lag"]}) == []
-    assert taken_out(seen, rivals={"delay": ["delay"]}) == ["delay"]
+    assert taken_out(seen, rivals={"delay": tied}) == suspects
 
 
 def test_one_with_many_amounts_removes_95_percent_if_it_is_alone(taken_out):
