@@ -60,7 +60,7 @@ class Source:
     the file. sample_rate: Hz, where no column has the time. rows: a part of the file, counted from 0, the end excluded.
     time: a part of the file, from its stamps, s. What counts time from the start, as a drift, begins with the part.
     settle: the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken, after a
-    low-pass. run_in: how often the drive is simulated before the first sample, for a periodic record in steady state.
+    low-pass. run_in: how often the whole record's drive is simulated before its first sample, for a steady state.
     rest_at: the drive at which the stage rested until one sample before the first, from where it goes there on a line,
     of all axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is
     left out; it turns where that goes back by more. smooth_drive: whether the drive is smooth between its samples, as

@@ -33,7 +33,7 @@ class QuadraticGain(Block):
 
 
 class OfDisplacement(QuadraticGain):
-    """The stroke itself curves: y = f + curvature f^2, f = d u - h.
+    """The stroke itself, or its reading, curves: y = f + curvature f^2, f = d u - h.
 
     Gu, Zhu & Su (2014), IEEE Trans. Ind. Electron. 61, 1583: a polynomial behind the hysteresis.
     """

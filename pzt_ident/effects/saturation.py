@@ -34,7 +34,7 @@ class Saturation(Block):
 
 
 class OfDisplacement(Saturation):
-    """The stroke levels off: y = F tanh(f / F), f = d u - h, knee = 1 / F.
+    """The stroke, or its sensor, levels off: y = F tanh(f / F), f = d u - h, knee = 1 / F.
 
     Royston & Houston (1998), J. Acoust. Soc. Am. 104, 2814, behind the hysteresis.
     """

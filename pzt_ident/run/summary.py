@@ -127,9 +127,13 @@ def _weak_floors(axes: list[Facts]) -> Iterator[str]:
 
 def _unmeasured(axes: list[Facts]) -> Iterator[str]:
     """A sentence on each axis without a response."""
+    measured = next(axis["name"] for axis in axes if axis["response_unit"] is not None)
     for axis in axes:
         if axis["response_unit"] is None:
-            yield f"{axis['name']} has no response: its drive matters where a coupling takes it to another axis"
+            yield (
+                f"{axis['name']} has no response: its drive matters where a coupling takes it to another axis, and its "
+                f"parameters are those of {measured} but for what the job says of {axis['name']}"
+            )
 
 
 def _all_fitted(records: list[Record]) -> Iterator[str]:

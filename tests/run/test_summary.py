@@ -69,6 +69,13 @@ def notes_with(folder: Path, *changes: tuple[str, str], made: object = None) -> 
     return summary_of(load_job(stage.write(folder, made or stage.records({}), job)))["notes"]
 
 
+def test_whose_parameters_an_axis_without_a_response_has_is_told(tmp_path):
+    job = stage.JOB.replace('    x: {drive: "u_x [V]"', '    y: {drive: "u_x [V]"}\n    x: {drive: "u_x [V]"')
+    notes = summary_of(load_job(stage.write(tmp_path, stage.records({}), job)))["notes"]
+    (note,) = [note for note in notes if "has no response" in note]
+    assert note.startswith("y has no response") and "its parameters are those of x" in note
+
+
 def test_that_no_record_is_kept_back_is_told(tmp_path):
     assert notes_with(tmp_path) == []
     (note,) = notes_with(tmp_path, ("use: validate", "use: identify"))
