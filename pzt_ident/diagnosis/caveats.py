@@ -11,6 +11,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.drive_noise import drive_noise_sentence
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import has_history
 from pzt_ident.diagnosis.locate import locate
@@ -28,7 +29,8 @@ def caveats(case: Case, fit: Fit, said: str = "") -> str:
         measured_only_sentence(case, fit),
         bounds_sentence(fit),
     )
-    sentences = *of_fit, start_step_sentence(case, fit), fault_sentences(case), case.caveat
+    of_records = start_step_sentence(case, fit), drive_noise_sentence(case, fit), fault_sentences(case)
+    sentences = *of_fit, *of_records, case.caveat
     return "".join(sentence for sentence in sentences if sentence not in said)
 
 

@@ -1,22 +1,29 @@
-"""Recorded drives with noise, every reversal of which a hysteresis would count: the model as given without it."""
+"""Recorded drives with noise, every reversal of which a hysteresis would count: the model as given without it, and what
+a model makes of it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pzt_ident.data.drive_noise import path_of, without_noise
+from pzt_ident.data.drive_noise import noise_of_drive, path_of, without_noise
 from pzt_ident.data.record import Record
+from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, adequate, removed_rms
+from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, FAR, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
+from pzt_ident.engine.simulator import Simulator
+
+Array = NDArray[np.float64]
 
 QUIET = "noise of the drive left out"  # the step after which drives have none
 PROMISING = 0.02  # of the misfit of the model as given
 LONGER = 1.001  # times its path without noise: less changes no hysteresis
+MUCH = 0.5  # of an RMSE, root mean square: what noise of the drives must be of it to be told
 
 
 def with_quiet_drives(case: Case, first: Fit) -> tuple[Case, Fit] | None:
@@ -61,3 +68,39 @@ def denoised(record: Record) -> Record:
     pairs = zip(record.drive, drives, strict=True)
     longer = any(path_of(with_it) > LONGER * path_of(without) for with_it, without in pairs)
     return replace(record, drive=drives, denoise_drive=True) if longer else record
+
+
+def passed_on(fit: Fit) -> Array:
+    """Root mean square by which the response of a fit changes in the identification records with as much noise again as
+    their drives were recorded with, SI units: (measured axes,)."""
+    theta, random = fit.problem.parameters(fit.point), np.random.default_rng(0)
+    simulators = fit.problem.simulators["identify"]
+    squares = [simulator.scored * np.square(change_by_noise(simulator, theta, random)) for simulator in simulators]
+    return np.asarray(np.sqrt(np.sum(squares, axis=0) / sum(simulator.scored for simulator in simulators)))
+
+
+def change_by_noise(simulator: Simulator, theta: Array, random: np.random.Generator) -> Array:
+    """The same of one record, about its mean."""
+    record = simulator.record
+    noise = np.array([[noise_of_drive(drive)] for drive in record.drive])
+    noisy = replace(record, drive=record.drive + noise * random.standard_normal(record.drive.shape))
+    change = simulator.on(noisy).simulate(theta)[0] - simulator.simulate(theta)[0]
+    return np.asarray(np.std(change[:, record.settle :], axis=1))
+
+
+def drive_noise_sentence(case: Case, fit: Fit) -> str:
+    """A sentence on each axis where what a fit makes of the noise of recorded drives is far above the noise floor and
+    MUCH of what it leaves."""
+    model, sentences = fit.problem.model, list[str]()
+    errors, floors = fit.by_use[0] * fit.problem.sizes, case.floors * fit.problem.sizes
+    passed = passed_on(fit) if (errors > FAR * floors).any() else np.zeros(len(floors))
+    for i, axis in enumerate(model.measured):
+        if passed[i] > max(FAR * floors[i], MUCH * errors[i]):
+            unit = str(fit.problem.records[0].response_units[axis])
+            size = f"{passed[i] / factor(unit):.2g} {unit}{f' in {model.axes[axis]}' * (len(model.measured) > 1)}"
+            sentences.append(
+                f" The drives were recorded with noise, of which this model makes {size} rms,"
+                f" {passed[i] / errors[i]:.2g} times what it leaves. If that is noise of the recorder and not of the"
+                " drive, the noise floor is too low, and what is left may be no more."
+            )
+    return "".join(sentences)

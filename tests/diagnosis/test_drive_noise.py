@@ -9,7 +9,14 @@ import rig
 import stage
 from pzt_ident.diagnosis import drive_noise
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, quieted, with_quiet_drives
+from pzt_ident.diagnosis.drive_noise import (
+    QUIET,
+    drive_noise_sentence,
+    passed_on,
+    quiet_behind,
+    quieted,
+    with_quiet_drives,
+)
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.registry import word_of
@@ -58,3 +65,32 @@ def test_noise_is_left_out_where_it_is_much_of_the_misfit_and_behind_effects_whe
 def test_drives_without_noise_stay_as_they_are():
     case = recorded_with_noise(noise=0.0)
     assert quieted(case) is case
+
+
+def smooth(bent=0.0, floor=1e-11):
+    """A linear stage of 0.08 um/V without noise, whose drive was recorded with 20 mV. bent: m, what no model of it
+    follows. floor: the noise that its windows are taken to show."""
+    made, random = stage.records({}, drives=DRIVES), np.random.default_rng(4)
+    noisy = [
+        replace(
+            record,
+            drive=record.drive + random.normal(0, 0.02, record.drive.shape),
+            response=8e-8 * record.drive + bent * np.sin(np.arange(record.samples)),
+        )
+        for record in made
+    ]
+    case = Case(("bouc_wen",), (), noisy, stage.specs({"bouc_wen.alpha": 0.0}))
+    case.floor, case.floors = floor, np.array([floor])
+    return case
+
+
+def test_what_a_model_makes_of_the_noise_of_its_drive_is_that_noise_times_its_gain():
+    fit = first_fit(case := smooth(), 0)
+    assert passed_on(fit) == pytest.approx([0.02 * 8e-8], rel=0.1)
+    assert fit.identify == pytest.approx(0.02 * 8e-8, rel=0.1)
+    assert "makes 0.0016 um rms" in drive_noise_sentence(case, fit)
+
+
+@pytest.mark.parametrize("made", [smooth(bent=1e-7), smooth(floor=1e-9)])
+def test_noise_of_the_drive_that_is_little_of_the_rest_or_near_the_floor_is_not_told(made):
+    assert drive_noise_sentence(made, first_fit(made, 0)) == ""
