@@ -166,9 +166,9 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_ri
 
 
 def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:
-    """Set the rivals of the effects in the last model by refits beside all the other effects, with a step to a tied one
-    that has fewer parameters, or to the first name of a model that has two, but from the noise to none that leaves
-    more. Those of a single effect are known where it is the last that was added."""
+    """Set the rivals of the effects in the last model by refits beside all the other effects, with a step to one that
+    leaves clearly less, to a tied one that has fewer parameters, or to the first name of a model that has two, but from
+    the noise to none that leaves more. Those of a single effect are known where it is the last that was added."""
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
@@ -178,10 +178,10 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
-        rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
+        best, rivals = equals_of_best(case, now, {effect: now} | {fit.effects[-1]: fit for fit in tied})
         level = AT_NOISE * case.floor
         alike = [item for item, fit in rivals.items() if now.total >= level or fit.total < level]
-        taken = min(alike, key=partial(simplicity, case, now, rivals))
+        taken = min(alike, key=partial(simplicity, case, best, rivals))
         forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
         rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
         if taken != effect:
@@ -189,6 +189,19 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             steps.append(step)
         step.rivals = {taken: rivals[taken]} | rivals
         now = rivals[taken]
+
+
+def equals_of_best(case: Case, now: Fit, rivals: dict[str, Fit]) -> tuple[Fit, dict[str, Fit]]:
+    """The lowest rival of no more parameters than a fit, and those that are tied with it, where that leaves clearly
+    less than the fit does; else the fit, and all."""
+    clear = 2 * TIE * case.floor
+    lower = [fit for fit in rivals.values() if removed_rms(now.total, fit.total) > clear and fit.freedom <= now.freedom]
+    if not lower:
+        return now, rivals
+    best = min(lower, key=lambda fit: fit.total)
+    return best, {
+        item: fit for item, fit in rivals.items() if fit is best or is_tied(case, best.effects[-1], best, fit)
+    }
 
 
 def rivals_in_place(case: Case, now: Fit, effect: str, tied: Collection[str], in_every_form: bool) -> list[Fit]:
