@@ -22,6 +22,7 @@ from pzt_ident.diagnosis.ties import (
     LIMIT_TIE,
     TIE,
     TWIN,
+    are_look_alikes,
     at_noise,
     generalises,
     is_better,
@@ -177,11 +178,16 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             break
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
+        if lower := lower_rival(case, now, effect, fits):
+            on_step(step := exchange_step(case, now, lower, effect))
+            steps.append(step)
+            effect, now = lower.effects[-1], lower
+            fits = rivals_in_place(case, now, effect, (), in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
-        best, rivals = equals_of_best(case, now, {effect: now} | {fit.effects[-1]: fit for fit in tied})
+        rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         level = AT_NOISE * case.floor
         alike = [item for item, fit in rivals.items() if now.total >= level or fit.total < level]
-        taken = min(alike, key=partial(simplicity, case, best, rivals))
+        taken = min(alike, key=partial(simplicity, case, now, rivals))
         forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
         rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
         if taken != effect:
@@ -191,17 +197,12 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         now = rivals[taken]
 
 
-def equals_of_best(case: Case, now: Fit, rivals: dict[str, Fit]) -> tuple[Fit, dict[str, Fit]]:
-    """The lowest rival of no more parameters than a fit, and those that are tied with it, where that leaves clearly
-    less than the fit does; else the fit, and all."""
-    clear = 2 * TIE * case.floor
-    lower = [fit for fit in rivals.values() if removed_rms(now.total, fit.total) > clear and fit.freedom <= now.freedom]
-    if not lower:
-        return now, rivals
-    best = min(lower, key=lambda fit: fit.total)
-    return best, {
-        item: fit for item, fit in rivals.items() if fit is best or is_tied(case, best.effects[-1], best, fit)
-    }
+def lower_rival(case: Case, now: Fit, effect: str, fits: Sequence[Fit]) -> Fit | None:
+    """The lowest of the fits with a look-alike in the place of an effect, if it has no more parameters and leaves
+    clearly less: the effect was taken before the others were known."""
+    able = [fit for fit in fits if fit.freedom <= now.freedom and are_look_alikes(effect, fit.effects[-1])]
+    best = min(able, key=lambda fit: fit.total, default=now)
+    return best if removed_rms(now.total, best.total) > 2 * TIE * case.floor else None
 
 
 def rivals_in_place(case: Case, now: Fit, effect: str, tied: Collection[str], in_every_form: bool) -> list[Fit]:

@@ -420,33 +420,27 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
 
 
 @pytest.mark.parametrize(
-    ("lag", "freedom", "class_of_it"),
-    [(0.98, 2, ["delay", "sensor_lag"]), (1.12, 2, ["amplifier_lag", "sensor_lag", "delay"]), (0.98, 3, None)],
+    ("left", "freedom", "taken"), [(0.98, 2, "delay"), (1.12, 2, "amplifier_lag"), (0.98, 3, "amplifier_lag")]
 )
-def test_a_look_alike_that_leaves_clearly_less_in_the_last_model_takes_the_place_of_an_effect(
-    monkeypatch, lag, freedom, class_of_it
+def test_a_look_alike_of_no_more_parameters_that_leaves_clearly_less_takes_the_place_of_an_effect(
+    monkeypatch, left, freedom, taken
 ):
-    """class_of_it: the effect that is named, and what is tied with it; None where that has more parameters."""
+    """Its rivals are asked for anew beside it, where a lag that rested elsewhere is tied with it."""
 
     def fitted(word, total, freedom=2):
         same = {"identify": total, "validate": None, "problem": ONE_AXIS}
         return SimpleNamespace(effects=("creep", word), total=total, freedom=freedom, **same)
 
-    now, near = fitted("amplifier_lag", 1.16), fitted("sensor_lag", 1.0 if lag < 1 else 1.15)
-    fits = {"amplifier_lag": [fitted("delay", lag, freedom), near]}
-    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, *_: [effect])
+    now, lower = fitted("amplifier_lag", 1.16), fitted("delay", left, freedom)
+    fits = {"amplifier_lag": [lower], "delay": [fitted("sensor_lag", 0.99)], "creep": []}
+    monkeypatch.setattr(exchange, "rivals_in_place", lambda case, now, effect, *_, **__: fits[effect])
     monkeypatch.setattr(exchange, "other_forms", lambda *arguments: [])
-    monkeypatch.setattr(
-        exchange, "fits_in_place", lambda case, now, effect, items, **_: fits.get(*items, []) if items else []
-    )
-    monkeypatch.setattr(exchange, "at_noise", lambda *arguments: False)
-    steps = [Step(now, "creep"), Step(now, "amplifier_lag")]
-    exchange.find_rivals(SimpleNamespace(floor=1.0, budget=Budget()), SimpleNamespace(effects=()), steps, repr)
-    if class_of_it:
-        assert {*steps[-1].tied} == {*class_of_it}
-        assert steps[-1].added == class_of_it[0] and ("amplifier_lag" in steps[-1].tied) == (lag > 1)
-    else:
-        assert steps[-1].added in ("amplifier_lag", "sensor_lag")
+    monkeypatch.setattr(exchange, "fits_in_place", lambda *arguments, **_: [])
+    steps, told = [Step(now, "creep"), Step(now, "amplifier_lag")], []
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    exchange.find_rivals(case, SimpleNamespace(effects=()), steps, told.append)
+    assert steps[-1].fit.effects == ("creep", taken) and told == steps[2:]
+    assert {*steps[-1].tied} == ({"delay", "sensor_lag"} if taken == "delay" else {"amplifier_lag", "delay"})
 
 
 @pytest.mark.parametrize(("own", "other", "taken"), [(1.0, 1.07, 0), (1.0, 1.04, 1), (1.06, 1.1, 1)])
