@@ -20,17 +20,17 @@ from pzt_ident.model.registry import blocks, word_of
 def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
     """The shapes of an effect, its parameters without a null, that ended on a bound or next to nothing on every axis
     and are felt there, and its amounts if they all did: what one axis shows is that of the effect."""
-    own = {
-        name: entry
-        for name, entry in entries_of(fit).items()
-        if word_of(effect) in (entry.block.name, entry.parameter.effect_word)
-    }
-    amounts = {name for name, entry in own.items() if entry.parameter.null is not None}
+    own, amounts = own_entries(fit, effect), amounts_of(fit, effect)
     limits = {*fit.on_bounds, *small_shapes(fit)}
     shown = {entry.word for name, entry in own.items() if name not in amounts and name not in limits}
     shapes = [name for name, entry in own.items() if name not in amounts and entry.word not in shown]
     shapes = [name for name in shapes if is_felt(fit, name)]
     return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
+
+
+def amounts_of(fit: Fit, effect: str) -> set[str]:
+    """The free amounts of an effect, its parameters with a null."""
+    return {name for name, entry in own_entries(fit, effect).items() if entry.parameter.null is not None}
 
 
 def small_shapes(fit: Fit) -> list[str]:
@@ -71,7 +71,23 @@ def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
 def is_limited(fit: Fit) -> bool:
     """Whether the last effect of a fit is in a limit that is declared to be something else."""
     last = fit.effects[-1]
-    return bool(limit_of(fit, own_bounds(fit, last)) or harmonic_of(fit, last) or size_of(fit, last))
+    on_bounds = own_bounds(fit, last)
+    bounded = limit_of(fit, on_bounds) or excess_of(fit, last, on_bounds)
+    return bool(bounded or harmonic_of(fit, last) or size_of(fit, last))
+
+
+def excess_of(fit: Fit, effect: str, on_bounds: Collection[str]) -> str:
+    """What an effect is of which a shape ended on a bound and an amount beyond what the catalogue expects; empty for
+    any other."""
+    amounts = amounts_of(fit, effect)
+    return "larger than any such effect is expected to be" if {*on_bounds} - amounts and exceeded(fit, amounts) else ""
+
+
+def exceeded(fit: Fit, names: Collection[str]) -> list[str]:
+    """Those of some free parameters that lie beyond the bounds which the catalogue declares."""
+    problem, values = fit.problem, fit.values
+    declared = {name: problem.declared_bounds(int(problem.free[problem.names.index(name)])) for name in names}
+    return [name for name, (low, high) in declared.items() if not low <= values[name] <= high]
 
 
 def harmonic_of(fit: Fit, effect: str) -> str:
@@ -91,6 +107,16 @@ def curve_of(fit: Fit, effect: str) -> str:
 def size_of(fit: Fit, effect: str) -> str:
     """What an effect is whose size is another one in each record, though it is the device's; empty for any other."""
     return "of another size in each record, as the device is not" if differs_in_size(fit, effect) else ""
+
+
+def own_entries(fit: Fit, effect: str) -> dict[str, Entry]:
+    """The free parameters of an effect of a fit, by name."""
+    word = word_of(effect)
+    return {
+        name: entry
+        for name, entry in entries_of(fit).items()
+        if word in (entry.block.name, entry.parameter.effect_word)
+    }
 
 
 def entries_of(fit: Fit) -> dict[str, Entry]:

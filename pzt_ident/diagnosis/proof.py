@@ -25,6 +25,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import (
     curve_of,
     differs_by_record,
+    excess_of,
     harmonic_of,
     limit_of,
     own_bounds,
@@ -64,16 +65,16 @@ def unproven(
     proportion, and none is proven where that is more than BESIDE. None may have rivals that fit as well and are not its
     look-alikes: what any effect takes up is not that of one. And none may have a shape, or all its amounts, on a bound,
     as a cyclic error of one period in a stroke: it stands for what it is like there, unless the model is adequate with
-    it. Even then none may be in a limit that is declared to be something else, or a low harmonic of the drive, or of
-    another size in each record where it is the device's; nor a line of few periods in the stroke unless the model is
-    adequate. Beside an effect that leaves its trace where its form is another one each must remove SINGLE, as if it
-    were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of its band is proven
-    whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are gone beside it,
-    unless the model is adequate. What takes up enough and only may be something else is a suspect beside which the
-    others are judged: without it what they take up is nothing; of those that remove little beside what is in a limit
-    none is proven. What is proven on one of several axes, and clear there, is proven, whatever another lacks. What is
-    flexible is proven only where the model is adequate with it, or if it removes SINGLE. None is proven by a model that
-    is simulated too coarsely with it.
+    it. Even then none may be in a limit that is declared to be something else, or beyond what the catalogue expects
+    with a shape on a bound, or a low harmonic of the drive, or of another size in each record where it is the device's;
+    nor a line of few periods in the stroke unless the model is adequate. Beside an effect that leaves its trace where
+    its form is another one each must remove SINGLE, as if it were alone: a gain by the swing beside a memory. A line of
+    the spectrum that takes up all of its band is proven whatever is left elsewhere. Nor may one take the place of the
+    model's operator, whose loops are gone beside it, unless the model is adequate. What takes up enough and only may be
+    something else is a suspect beside which the others are judged: without it what they take up is nothing; of those
+    that remove little beside what is in a limit none is proven. What is proven on one of several axes, and clear there,
+    is proven, whatever another lacks. What is flexible is proven only where the model is adequate with it, or if it
+    removes SINGLE. None is proven by a model that is simulated too coarsely with it.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
     if coarse := simulated_too_coarsely(case, first, now, known):
@@ -249,7 +250,8 @@ def suspect(
     on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
     view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
     settled = adequate(view, given, after)
-    limit = limit_of(now, on_bounds) or harmonic_of(now, effect) or size_of(now, effect)
+    limit = limit_of(now, on_bounds) or excess_of(now, effect, on_bounds)
+    limit = limit or harmonic_of(now, effect) or size_of(now, effect)
     limit = limit or ("" if settled else curve_of(now, effect))
     is_line = not limit and is_own_line(case, without, now, effect)
     displaced = "" if settled else displaced_operator(case, first, now, effect)

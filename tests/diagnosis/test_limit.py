@@ -5,8 +5,16 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import limit
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.limit import entries_of, is_limited, own_bounds, small_shapes
+from pzt_ident.diagnosis.limit import (
+    amounts_of,
+    entries_of,
+    excess_of,
+    is_limited,
+    own_bounds,
+    small_shapes,
+)
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.parameter import SMALL
 from pzt_ident.model.registry import blocks
@@ -39,3 +47,19 @@ def test_a_shape_that_no_amount_is_held_against_is_small_to_none(item):
     fit = fit_at((item,), problem, np.zeros(problem.dimensions))
     declared = {name for name, entry in entries_of(fit).items() if entry.parameter.small_to}
     assert {*small_shapes(fit)} <= declared
+
+
+@pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
+@pytest.mark.parametrize(("bounded", "beyond"), [(False, True), (True, False), (True, True)])
+def test_an_effect_on_a_bound_and_beyond_what_is_expected_is_in_a_limit(item, bounded, beyond, monkeypatch):
+    """Neither alone: a lag may be slower than the slowest of the catalogue, and an effect a little larger."""
+    monkeypatch.setattr(limit, "is_felt", lambda fit, name: True)
+    case = stage.beside(stage.case(model=MODEL), stage.case(model=MODEL))
+    given = case.problem((item,))
+    amounts = amounts_of(fit_at((item,), given, np.full(given.dimensions, 0.5)), item)
+    ends = zip(given.names, given.lower.tolist(), given.upper.tolist(), strict=True)
+    problem = case.with_specs({n: Widened((low, 2 * high)) for n, low, high in ends if n in amounts}).problem((item,))
+    shares = [beyond if name in amounts else 1 - 0.5 * (not bounded) for name in problem.names]
+    fit = fit_at((item,), problem, np.array(shares, dtype=float))
+    shapes = {*own_bounds(fit, item)} - amounts
+    assert bool(excess_of(fit, item, own_bounds(fit, item))) == bool(shapes and amounts and beyond)
