@@ -34,6 +34,7 @@ LIKE = 1.5  # times that noise: what windows may say instead, in which the respo
 SAME_CLOCK = 0.1  # sample times: records that are farther apart at their ends were not sampled alike
 HALF = 0.51  # of a decimal, by which a rounded value is beside it
 WEAK = "short windows (weak)"  # the source of a floor that is taken while the stage moves
+APART = 8.0  # times such a floor: rests that are not scored and differ by more are not of the noise of what is scored
 CHANGED = 3.0  # times the noise at rest: what repeated records differ by more is a stage that changed
 
 
@@ -66,9 +67,18 @@ def evident_floor(records: list[Record], axis: int) -> Floor:
     if repeats and still and repeats.value > CHANGED * still.value:
         times = repeats.value / still.value
         return Floor(still.value, f"{still.source}; repeated records differ {times:.2g} times as much")
+    known = repeats or still or floor_of_periods(signals, step)
+    return known or floor_of_unscored(records, axis, signals, step)
+
+
+def floor_of_unscored(records: list[Record], axis: int, signals: list[Signal], step: float) -> Floor:
+    """By rests that are not scored, or in windows where these say something else altogether: ahead of what is scored a
+    recorder may not have begun, or a stage not have settled."""
     whole = [Signal(r.drive, r.response[axis], r.dt) for r in records]
-    known = repeats or still or floor_of_periods(signals, step) or floor_of_rests(whole, signals, step)
-    return known or weak_floor(signals, step)
+    still, moving = floor_of_rests(whole, signals, step), weak_floor(signals, step)
+    if still is None or not moving.value / APART <= still.value <= APART * moving.value:
+        return moving
+    return Floor(still.value, f"{still.source} that are not scored")
 
 
 def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | None:

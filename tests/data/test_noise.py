@@ -227,18 +227,32 @@ def test_a_record_of_wide_band_says_nothing_of_the_noise_of_smooth_ones():
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.9])
-@pytest.mark.parametrize("scored_anew", [0, 200])
-def test_a_rest_that_is_not_scored_says_more_than_windows_and_less_than_periods(memory, scored_anew):
+@pytest.mark.parametrize("unscored_motion", [0, 200])
+def test_a_rest_that_is_not_scored_says_more_than_windows_and_less_than_periods(memory, unscored_motion):
     """Noise behind a lag, which windows take for signal; the stage rests ahead of the scored samples."""
     sweep = 50 - 50 * np.cos(2 * np.pi * (np.arange(4000) / 1000) ** 1.2)
     noise = lfilter([(1 - memory**2) ** 0.5], [1, -memory], white(4600))
-    ahead = [record(np.append(np.zeros(600), sweep), np.append(np.zeros(600), sweep) + noise, settle=600 + scored_anew)]
+    ahead = [
+        record(np.append(np.zeros(600), sweep), np.append(np.zeros(600), sweep) + noise, settle=600 + unscored_motion)
+    ]
     floor = noise_floor(ahead, 0)
-    assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
+    assert (floor.source, floor.value) == ("rest segments that are not scored", pytest.approx(1, rel=0.15))
     periods = 50 - 50 * np.cos(2 * np.pi * np.arange(4000) / 800)
     louder = np.append(np.zeros(600), periods) + noise * np.repeat([1.0, 2.0], [600, 4000])
     again = noise_floor([record(np.append(np.zeros(600), periods), louder, settle=600)], 0)
     assert (again.source, again.value) == ("repeated periods", pytest.approx(2, rel=0.15))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.02, 30.0])
+@pytest.mark.parametrize("hung", [300, 600])
+def test_a_rest_before_a_recorder_began_or_a_stage_had_settled_is_no_evidence(share, hung):
+    """Ahead of the scored samples the reading hangs, or has another noise, as where an amplifier is switched on."""
+    sweep = 50 - 50 * np.cos(2 * np.pi * (np.arange(4000) / 1000) ** 1.2)
+    ahead = record(np.append(np.zeros(600), sweep), np.append(np.zeros(600), sweep) + white(4600), settle=600)
+    ahead.response[0, :hung] *= share
+    ahead.response[0, hung:600] *= max(share, 1e-3)
+    scored = record(sweep, ahead.response[0, 600:])
+    assert noise_floor([ahead], 0) == pytest.approx(noise_floor([scored], 0))
 
 
 def test_the_start_of_a_rest_is_left_to_settle():
