@@ -178,11 +178,12 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             break
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
-        if lower := lower_rival(case, now, effect, fits):
+        if lower := lower_rival(case, first, now, effect, fits):
+            tied = (*step.tied, effect)
             on_step(step := exchange_step(case, now, lower, effect))
             steps.append(step)
             effect, now = lower.effects[-1], lower
-            fits = rivals_in_place(case, now, effect, (), in_every_form=len(added) > 1)
+            fits = rivals_in_place(case, now, effect, tied, in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         level = AT_NOISE * case.floor
@@ -197,12 +198,16 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         now = rivals[taken]
 
 
-def lower_rival(case: Case, now: Fit, effect: str, fits: Sequence[Fit]) -> Fit | None:
-    """The lowest of the fits with a look-alike in the place of an effect, if it has no more parameters and leaves
-    clearly less: the effect was taken before the others were known."""
-    able = [fit for fit in fits if fit.freedom <= now.freedom and are_look_alikes(effect, fit.effects[-1])]
-    best = min(able, key=lambda fit: fit.total, default=now)
-    return best if removed_rms(now.total, best.total) > 2 * TIE * case.floor else None
+def lower_rival(case: Case, first: Fit, now: Fit, effect: str, fits: Sequence[Fit]) -> Fit | None:
+    """The lowest of the adequate fits with a look-alike in the place of an effect, if it has no more parameters, is in
+    no limit and leaves clearly less: the effect was taken before the others were known."""
+
+    def is_able(fit: Fit) -> bool:
+        lower = not is_equal(case, fit, now) and fits_better(case, now, fit)
+        alike = fit.freedom <= now.freedom and are_look_alikes(effect, fit.effects[-1])
+        return lower and alike and adequate(case, first, fit) and not in_its_limit(now, fit)
+
+    return min(filter(is_able, fits), key=lambda fit: fit.total, default=None)
 
 
 def rivals_in_place(case: Case, now: Fit, effect: str, tied: Collection[str], in_every_form: bool) -> list[Fit]:

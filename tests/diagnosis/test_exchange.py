@@ -1,6 +1,7 @@
 """What is exchanged for another form, and what is not."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -74,3 +75,33 @@ def test_a_form_that_may_contain_an_effect_at_the_noise_is_its_rival_where_it_fi
     monkeypatch.setattr(exchange, "fits_in_place", lambda *arguments, as_rivals: [rival])
     found = exchange.rivals_in_place(made_fits.CASE, now, "delay", (), in_every_form=True)
     assert found == ([rival] if kept else [])
+
+
+@pytest.mark.parametrize(
+    ("lower", "taken"),
+    [
+        ({}, True),
+        ({"total": 1.1}, False),
+        ({"freedom": 3}, False),
+        ({"validate": 2.0}, False),
+        ({"effects": ("creep", "drift")}, False),
+    ],
+)
+@pytest.mark.parametrize("bound", ["adequate", "limit", None])
+def test_a_look_alike_takes_the_place_only_where_it_could_have_been_added(monkeypatch, lower, taken, bound):
+    """Not where it rests in a limit or leaves a model above the noise, whose ties an error of a fit may tell from."""
+    now = SimpleNamespace(effects=("creep", "amplifier_lag"), total=1.16, identify=1.16, validate=1.16, freedom=2)
+    other = SimpleNamespace(**vars(now) | {"effects": ("creep", "delay"), "total": 0.98, "validate": 0.98} | lower)
+    monkeypatch.setattr(exchange, "adequate", lambda *arguments: bound != "adequate")
+    monkeypatch.setattr(exchange, "in_its_limit", lambda *arguments: bound == "limit")
+    found = exchange.lower_rival(SimpleNamespace(floor=1.0), None, now, "amplifier_lag", [other])
+    assert (found is other) == (taken and bound is None)
+
+
+@pytest.mark.parametrize("floors", [27.0, 1800.0])
+def test_far_above_the_noise_what_a_rounding_tells_apart_is_no_better(monkeypatch, floors):
+    now = SimpleNamespace(effects=("amplifier_lag",), total=floors, identify=floors, validate=floors, freedom=2)
+    other = SimpleNamespace(**vars(now) | {"effects": ("delay",), "total": 0.9998 * floors, "validate": 0.99 * floors})
+    monkeypatch.setattr(exchange, "adequate", lambda *arguments: True)
+    monkeypatch.setattr(exchange, "in_its_limit", lambda *arguments: False)
+    assert exchange.lower_rival(SimpleNamespace(floor=1.0), None, now, "amplifier_lag", [other]) is None

@@ -436,6 +436,8 @@ def test_a_look_alike_of_no_more_parameters_that_leaves_clearly_less_takes_the_p
     monkeypatch.setattr(exchange, "rivals_in_place", lambda case, now, effect, *_, **__: fits[effect])
     monkeypatch.setattr(exchange, "other_forms", lambda *arguments: [])
     monkeypatch.setattr(exchange, "fits_in_place", lambda *arguments, **_: [])
+    monkeypatch.setattr(exchange, "adequate", lambda *arguments: True)
+    monkeypatch.setattr(exchange, "in_its_limit", lambda *arguments: False)
     steps, told = [Step(now, "creep"), Step(now, "amplifier_lag")], []
     case = SimpleNamespace(floor=1.0, budget=Budget())
     exchange.find_rivals(case, SimpleNamespace(effects=()), steps, told.append)
