@@ -60,16 +60,16 @@ class Source:
     the file. sample_rate: Hz, where no column has the time. rows: a part of the file, counted from 0, the end excluded.
     time: a part of the file, from its stamps, s. What counts time from the start, as a drift, begins with the part.
     settle: the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken, after a
-    low-pass. run_in: how often the whole record's drive is simulated before its first sample, for a steady state.
-    rest_at: the drive at which the stage rested until one sample before the first, from where it goes there on a line,
-    of all axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is
-    left out; it turns where that goes back by more. smooth_drive: whether the drive is smooth between its samples, as
-    behind a filter against aliasing, and not linear, as it is unless the model takes it as smooth by itself: with
-    `run_in` it is the Fourier series of the record, else a cubic spline; steps of 2 and more feel it. steps: simulation
-    steps in a sample. dataset: below which one of a file with several its channels are. table: which one of a text
-    export with several. index: which part of an array. sheet: which one of a workbook. channels: what is elsewhere in
-    this record, by `time`, `drive`, `response` or, of one axis, `x.drive`: `{response: {file: y.npy}}` takes every
-    response from another file.
+    low-pass. run_in: how often the whole drive is simulated before its first sample, for a periodic record in steady
+    state. rest_at: the drive at which the stage rested until one sample before the first, from where it goes there on a
+    line, of all axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded
+    drive is left out; it turns where that goes back by more. smooth_drive: whether the drive is smooth between its
+    samples, as behind a filter against aliasing, and not linear, as it is unless the model takes it as smooth by
+    itself: with `run_in` it is the Fourier series of the record, else a cubic spline; steps of 2 and more feel it.
+    steps: simulation steps in a sample. dataset: below which one of a file with several its channels are. table: which
+    one of a text export with several. index: which part of an array. sheet: which one of a workbook. channels: what is
+    elsewhere in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`: `{response: {file: y.npy}}`
+    takes every response from another file.
     """
 
     file: str
@@ -98,7 +98,7 @@ class Record:
 
     drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
     dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
-    run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
+    run_in: as of `Source`.
     rest_at: the drive of each axis at which the stage rested until one sample before the first; None where that is the
     drive of the first sample. Empty where it is on all axes.
     denoise_drive: whether the drives are without the noise that was recorded. smooth_drive: whether they are smooth

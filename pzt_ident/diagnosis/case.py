@@ -76,11 +76,12 @@ class Case:
         return self._altered(self.words, self.specs, records)
 
     def on_axis(self, axis: int | None) -> Case:
-        """The same case with the noise floor of one measured axis alone; the case itself for None."""
+        """The same case with the noise floor of one measured axis alone, of which no shares are known; the case itself
+        for None."""
         if axis is None:
             return self
         other = copy(self)
-        other.floor = float(self.floors[axis])
+        other.floor, other.shares = float(self.floors[axis]), {}
         return other
 
     def _altered(self, words: Sequence[str | Choice], specs: Any, records: Sequence[Record] | None = None) -> Case:

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 QUIET = "noise of the drive left out"  # the step after which drives have none
 PROMISING = 0.02  # of the misfit of the model as given
 LONGER = 1.001  # times its path without noise: less changes no hysteresis
-MUCH = 0.5  # of an RMSE, root mean square: what noise of the drives must be of it to be told
+MUCH, ALL = 0.5, 1.2  # of an RMSE: what is told of noise of the drives; a stage follows what makes more than it leaves
 
 
 def with_quiet_drives(case: Case, first: Fit) -> tuple[Case, Fit] | None:
@@ -90,12 +90,12 @@ def change_by_noise(simulator: Simulator, theta: Array, random: np.random.Genera
 
 def drive_noise_sentence(case: Case, fit: Fit) -> str:
     """A sentence on each axis where what a fit makes of the noise of recorded drives is far above the noise floor and
-    MUCH of what it leaves."""
+    may be MUCH of what it leaves, or all."""
     model, sentences = fit.problem.model, list[str]()
     errors, floors = fit.by_use[0] * fit.problem.sizes, case.floors * fit.problem.sizes
     passed = passed_on(fit) if (errors > FAR * floors).any() else np.zeros(len(floors))
     for i, axis in enumerate(model.measured):
-        if passed[i] > max(FAR * floors[i], MUCH * errors[i]):
+        if max(FAR * floors[i], MUCH * errors[i]) < passed[i] < ALL * errors[i]:
             unit = str(fit.problem.records[0].response_units[axis])
             size = f"{passed[i] / factor(unit):.2g} {unit}{f' in {model.axes[axis]}' * (len(model.measured) > 1)}"
             sentences.append(

@@ -113,7 +113,8 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     restart_look_alikes(case, first, before, shortlist)
     drop_outdone_accounts(case, first, shortlist)
     if before is first:
-        case.shares = {word_of(item.score.effect): share_alone(case, first, item) for item in candidates}
+        shares = {word_of(item.score.effect): share_alone(case, first, item) for item in candidates}
+        case.shares = {word: max(share, case.shares.get(word, share)) for word, share in shares.items()}
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
     passing = [item for item in shortlist if item.fit and is_account(case, first, before, item.fit)]

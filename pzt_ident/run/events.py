@@ -57,7 +57,7 @@ def sentence(event: Mapping[str, Any], units: Mapping[str, str]) -> str:
         chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
         return f"refitted {chosen}: {error} {quantity(event['identify'], unit)}"
     again = event.get("path", 1) > 1 and step_name(event) == AS_GIVEN
-    return f"{step_name(event)}{', on another path' * again}: {error} {quantity(event['rmse']['identify'], unit)}"
+    return f"{step_name(event)}{' again' * again}: {error} {quantity(event['rmse']['identify'], unit)}"
 
 
 def verdict_line(verdict: str, reason: str) -> str:

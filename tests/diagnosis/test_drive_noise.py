@@ -94,3 +94,21 @@ def test_what_a_model_makes_of_the_noise_of_its_drive_is_that_noise_times_its_ga
 @pytest.mark.parametrize("made", [smooth(bent=1e-7), smooth(floor=1e-9)])
 def test_noise_of_the_drive_that_is_little_of_the_rest_or_near_the_floor_is_not_told(made):
     assert drive_noise_sentence(made, first_fit(made, 0)) == ""
+
+
+@pytest.mark.parametrize(
+    ("errors", "axes"), [((1.0, 1.0), "xy"), ((1.5, 1.0), "xy"), ((3.0, 1.0), "y"), ((3.0, 0.5), "")]
+)
+@pytest.mark.parametrize("floor", [0.1, 0.3])
+def test_what_each_axis_makes_of_the_noise_is_told_where_it_may_be_what_that_leaves(monkeypatch, errors, axes, floor):
+    """errors: of x and y, of which 1 is made of the noise each: one that leaves less follows the drive as recorded. Of
+    y a floor of 0.3 is near."""
+    case = stage.beside(stage.case(), stage.case())
+    fit = first_fit(case, 0)
+    sizes = fit.problem.sizes
+    case.floors = np.array([0.1, floor]) * 1e-6 / sizes
+    fit.__dict__["by_use"] = np.array([errors, errors]) * 1e-6 / sizes
+    monkeypatch.setattr(drive_noise, "passed_on", lambda fit: np.full(2, 1e-6))
+    said = drive_noise_sentence(case, fit)
+    expected = axes if floor == 0.1 else axes.replace("y", "")
+    assert [axis for axis in "xy" if f"1 um in {axis} rms" in said] == [*expected]

@@ -153,6 +153,13 @@ def test_what_is_alike_to_a_tied_effect_or_one_that_explains_as_much_is_no_rival
     assert taken_out(seen, rivals={"delay": tied}) == suspects
 
 
+def test_what_one_axis_lacks_is_judged_without_the_shares_of_all():
+    """What explains all that one axis lacks may be little of both."""
+    case = stage.beside(stage.case(), stage.case())
+    case.shares = {"creep": 0.05}
+    assert case.on_axis(None).shares and not case.on_axis(0).shares
+
+
 def test_one_with_many_amounts_removes_95_percent_if_it_is_alone(taken_out):
     assert taken_out(of(a=6.7, none=30.0), many="a") == []
     assert taken_out(of(a=6.9, none=30.0), many="a") == ["a"]

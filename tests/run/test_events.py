@@ -7,7 +7,7 @@ from pzt_ident.run.events import sentence, step_name
 STEP = {"event": "stair", "added": None, "removed": None, "rmse": {"identify": 0.031}}
 
 
-@pytest.mark.parametrize(("path", "said"), [(1, "as given"), (2, "as given, on another path")])
+@pytest.mark.parametrize(("path", "said"), [(1, "as given"), (2, "as given again")])
 def test_a_path_that_begins_again_is_said_to(path, said):
     assert sentence(STEP | {"path": path}, {"x": "um"}) == f"{said}: RMSE 0.03100\N{NO-BREAK SPACE}µm"
 
