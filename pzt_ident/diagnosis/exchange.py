@@ -179,11 +179,11 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
         if lower := lower_rival(case, first, now, effect, fits):
-            tied = (*step.tied, effect)
+            others = (*step.tied, effect)
             on_step(step := exchange_step(case, now, lower, effect))
             steps.append(step)
             effect, now = lower.effects[-1], lower
-            fits = rivals_in_place(case, now, effect, tied, in_every_form=len(added) > 1)
+            fits = rivals_in_place(case, now, effect, others, in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         level = AT_NOISE * case.floor

@@ -7,9 +7,9 @@ from collections.abc import Collection
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import continued, roomier
+from pzt_ident.diagnosis.bounds import Widened, continued, roomier
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.fit import NO_WORSE, Fit
+from pzt_ident.diagnosis.fit import EDGE, NO_WORSE, Fit
 from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive, has_few_periods, is_of_the_counts
 from pzt_ident.diagnosis.unequal import differs_in_size
 from pzt_ident.model.chain import Entry
@@ -80,14 +80,28 @@ def excess_of(fit: Fit, effect: str, on_bounds: Collection[str]) -> str:
     """What an effect is of which a shape ended on a bound and an amount beyond what the catalogue expects; empty for
     any other."""
     amounts = amounts_of(fit, effect)
-    return "larger than any such effect is expected to be" if {*on_bounds} - amounts and exceeded(fit, amounts) else ""
+    return (
+        "beyond the size that any such effect is expected to have"
+        if {*on_bounds} - amounts and exceeded(fit, amounts)
+        else ""
+    )
 
 
 def exceeded(fit: Fit, names: Collection[str]) -> list[str]:
-    """Those of some free parameters that lie beyond the bounds which the catalogue declares."""
-    problem, values = fit.problem, fit.values
-    declared = {name: problem.declared_bounds(int(problem.free[problem.names.index(name)])) for name in names}
-    return [name for name, (low, high) in declared.items() if not low <= values[name] <= high]
+    """Those of some free parameters of which a job says nothing that lie beyond the bounds which the catalogue
+    declares."""
+    return [name for name in names if is_beyond_declared(fit, fit.problem.names.index(name))]
+
+
+def is_beyond_declared(fit: Fit, i: int) -> bool:
+    """Whether a free parameter lies beyond the bounds that the catalogue declares, and the job gives it no others."""
+    problem = fit.problem
+    column, value = int(problem.free[i]), fit.values[problem.names[i]]
+    words = problem.model.spellings(problem.model.entries[column])
+    given = (problem.specs[word] for word in words if word in problem.specs)
+    low, high = problem.declared_bounds(column)
+    beside = EDGE * (high - low)
+    return not low - beside <= value <= high + beside and all(isinstance(spec, Widened) for spec in given)
 
 
 def harmonic_of(fit: Fit, effect: str) -> str:

@@ -36,14 +36,14 @@ class FixedValue:
 
 
 class Cube:
-    """Which parameters of a model are free, fixed, or linear: to be solved for.
+    """Which parameters of a model are free, fixed, or linear: to be solved for. specs: what is given of some of them.
 
     theta: (parameters,) in SI units, NaN where not fixed; free, linear_columns: columns of it. names, units, lower,
     upper, log: of the free parameters, in the user's units. Points are (candidates, free) in [0, 1].
     """
 
     def __init__(self, model: Chain, identify: Sequence[Record], specs: Mapping[str, ParameterSpec]) -> None:
-        self.model, self._identify = model, tuple(identify)
+        self.model, self._identify, self.specs = model, tuple(identify), specs
         check_units(model, identify[0])
         self.all_units = [unit_of(model, entry, identify[0]) for entry in model.entries]
         self.factors = np.array([factor(unit) for unit in self.all_units])

@@ -20,6 +20,7 @@ def judged(monkeypatch):
     def of(fits):
         scores = [Candidate.of([Score(word, explained=0.9, power=3.0)]) for word in fits]
         scorer = SimpleNamespace(scores=lambda word: next(item.forms for item in scores if item.score.effect == word))
+        monkeypatch.setattr(CASE, "shares", {}, raising=False)
         monkeypatch.setattr(verdict, "scorer_of", lambda case, before: scorer)
         monkeypatch.setattr(forms, "scorer_of", lambda case, before: scorer)
         monkeypatch.setattr(verdict, "score_all", lambda case, first, before, scorer: scores)

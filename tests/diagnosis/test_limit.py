@@ -1,5 +1,7 @@
 """What an effect is that ended in a limit, where another name fits it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
@@ -18,6 +20,15 @@ from pzt_ident.diagnosis.limit import (
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.parameter import SMALL
 from pzt_ident.model.registry import blocks
+
+
+@dataclass(frozen=True)
+class Given:
+    """Bounds of a job."""
+
+    bounds: tuple[float, float]
+    value: None = None
+
 
 MODEL = ("bouc_wen", "lumped")
 
@@ -51,15 +62,19 @@ def test_a_shape_that_no_amount_is_held_against_is_small_to_none(item):
 
 @pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
 @pytest.mark.parametrize(("bounded", "beyond"), [(False, True), (True, False), (True, True)])
-def test_an_effect_on_a_bound_and_beyond_what_is_expected_is_in_a_limit(item, bounded, beyond, monkeypatch):
-    """Neither alone: a lag may be slower than the slowest of the catalogue, and an effect a little larger."""
+@pytest.mark.parametrize("bounds_of", [Widened, Given])
+def test_an_effect_on_a_bound_and_beyond_what_is_expected_is_in_a_limit(item, bounded, beyond, bounds_of, monkeypatch):
+    """Neither alone: a lag may be slower than the slowest of the catalogue, and an effect a little larger. Of bounds
+    that the job gives no more is expected than that."""
     monkeypatch.setattr(limit, "is_felt", lambda fit, name: True)
     case = stage.beside(stage.case(model=MODEL), stage.case(model=MODEL))
     given = case.problem((item,))
     amounts = amounts_of(fit_at((item,), given, np.full(given.dimensions, 0.5)), item)
     ends = zip(given.names, given.lower.tolist(), given.upper.tolist(), strict=True)
-    problem = case.with_specs({n: Widened((low, 2 * high)) for n, low, high in ends if n in amounts}).problem((item,))
+    problem = case.with_specs({n: bounds_of((low, 2 * high)) for n, low, high in ends if n in amounts}).problem((item,))
     shares = [beyond if name in amounts else 1 - 0.5 * (not bounded) for name in problem.names]
     fit = fit_at((item,), problem, np.array(shares, dtype=float))
     shapes = {*own_bounds(fit, item)} - amounts
-    assert bool(excess_of(fit, item, own_bounds(fit, item))) == bool(shapes and amounts and beyond)
+    assert bool(excess_of(fit, item, own_bounds(fit, item))) == bool(
+        shapes and amounts and beyond and bounds_of is Widened
+    )

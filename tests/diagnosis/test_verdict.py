@@ -180,6 +180,21 @@ def test_candidates_stand_best_first_and_each_once():
     assert len(set(words)) == len(words)
 
 
+def test_what_each_effect_explains_alone_is_known_beside_the_model_as_given():
+    """The most that any diagnosis of it found, and nothing of what explains a rest beside others."""
+    case = stage.considering(stage.case(stage.EFFECTS["quadratic_gain"]), "quadratic_gain", "creep")
+    first = first_fit(case, 0)
+    found = diagnose(case, first)
+    assert {*case.shares} == {"quadratic_gain", "creep"}
+    assert case.shares["quadratic_gain"] > 0.95 > 0.5 > case.shares["creep"]
+    known = dict(case.shares)
+    diagnose(case, found.best.fit, first)
+    assert case.shares == known
+    case.shares["creep"] = 0.6
+    diagnose(case, first)
+    assert case.shares == known | {"creep": 0.6}
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_nothing_is_missing_at_the_noise(seed):
     diagnosis = judged(stage.case(seed=seed))
