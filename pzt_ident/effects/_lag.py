@@ -36,6 +36,7 @@ class SecondOrderLag(SecondOrder):
         (0.5, 5),
         "Damping ratio, zeta: 0.71 of a Butterworth filter, 1 of two equal poles, more of two unequal ones.",
         scale="log",
+        end="upper",
     )
 
     def prepare(tau, damping, dt):
@@ -49,8 +50,12 @@ class ThirdOrderLag(Block):
 
     sizes = Lag.sizes
     trials = {"share": 2, "damping": 2}
-    share = Parameter("1", (0.1, 0.8), "Part of the lag that the single pole has: 0.5 Butterworth, 0.43 Bessel.")
-    damping = Parameter("1", (0.3, 2), "Damping ratio of the others, zeta: 0.5 Butterworth, 0.72 Bessel.", scale="log")
+    share = Parameter(
+        "1", (0.1, 0.8), "Part of the lag that the single pole has: 0.5 Butterworth, 0.43 Bessel.", end="both"
+    )
+    damping = Parameter(
+        "1", (0.3, 2), "Damping ratio of the others, zeta: 0.5 Butterworth, 0.72 Bessel.", scale="log", end="upper"
+    )
 
     def prepare(tau, share, damping, dt):
         omega = 2 * damping / ((1 - share) * tau) if tau != 0 else 0.0

@@ -22,7 +22,8 @@ class Parameter:
 
     `null` is the value at which the block is exactly the identity; None if there is none.
     `end` is the value at which the range of a shape ends of itself, such as 0 for a spread, or the bound beyond which
-    nothing changes, or both, as of a time constant that is far longer than a record; None if there is none.
+    nothing changes, as of a time constant that is far longer than a record, or towards which the block is another form
+    of itself, as a filter of third order is one of second; or both; None if there is none.
     `limit` tells what else an effect is whose shape is on its lower bound, or whose amount is on any: "a play".
     `small_to` names the amount of the block of which a shape is at most SMALL in that limit, too.
     `effect` names the effect that the parameter belongs to, or several of its forms; unless the job lists it, the

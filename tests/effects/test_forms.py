@@ -101,6 +101,23 @@ def test_a_filter_of_third_order_lags_by_tau(share, damping, denominator):
     np.testing.assert_allclose(found, filtered([1], denominator), atol=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("share", "damping", "other"),
+    [
+        (0.8, 0.7, {"sensor_lag": {}}),
+        (0.1, 0.7, {"sensor_lag.second_order": {"damping": 0.7}}),
+        (0.43, 2.0, {"sensor_lag.second_order": {"damping": 1.0}}),
+    ],
+)
+def test_a_filter_of_third_order_is_one_of_fewer_poles_where_its_shapes_end(share, damping, other):
+    """To a tenth of what it lags: what rests there is a filter nonetheless."""
+    found = alone("sensor_lag.third_order", tau=2e-3, share=share, damping=damping)
+    ((item, shapes),) = other.items()
+    assert np.std(found - alone(item, tau=2e-3, **shapes)) < 0.1 * np.std(found - DRIVE)
+    declared = blocks["sensor_lag.third_order"].parameters()
+    assert declared["share"].end == "both" and declared["damping"].end == "upper"
+
+
 def test_a_second_mode_in_series_or_of_the_voltage():
     known = {"share": 0.2, "frequency": 40.0, "damping": 0.05}
     w = 2 * np.pi * 40
