@@ -22,7 +22,8 @@ NO_WORSE = 1e-3  # of the loss
 @dataclass(frozen=True)
 class Fit:
     """A model with its effects at its best point; `identify` and `validate` are RMSE in units of the loss, `validate`
-    None without validation records. `measured_only`: the added effects act on the measured axes only."""
+    None without validation records. `measured_only`: the added effects act on the measured axes only. `coarse`: the
+    first of them before the steps of the simulation were refined; None where they were not."""
 
     effects: tuple[str, ...]
     problem: Problem
@@ -31,6 +32,7 @@ class Fit:
     validate: float | None
     converged: bool = True
     measured_only: bool = False
+    coarse: float | None = None
 
     @property
     def freedom(self) -> int:

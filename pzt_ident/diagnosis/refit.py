@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,17 +28,25 @@ SCANNED = 0.82 ** np.arange(1, 15)  # of a guess, or of the range of a parameter
 SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tried
 
 
-def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf) -> Fit:
+def refit(
+    case: Case,
+    before: Fit,
+    effects: tuple[str, ...],
+    guess: dict[str, float],
+    rival: float = np.inf,
+    other: Fit | None = None,
+) -> Fit:
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
     the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. A guess that
     leads to a model which fits worse than the one it is added to is astray: the new effects then begin where the model
     fits best on the way from the guess to their nulls. One that leaves an amount at its null beside another begins at
-    the size of it that fits best. rival: an RMSE that a refit which stays far above it is given up for."""
+    the size of it that fits best. rival: an RMSE that a refit which stays far above it is given up for. other: the
+    refit from another guess, in the place of one that leads no lower."""
     problem = case.problem(effects, before.steps)
     point = start_beside_nulls(problem, before, effects, guess)
     key = (effects, before.steps, point.tobytes(), rival)
     if key not in case.refits:
-        fit = _best_of_axes(case, before, effects, problem, point, rival)
+        fit = _best_of_axes(case, before, effects, problem, point, rival, other)
         if leads_astray(before, fit):
             point = start_on_the_way(problem, before, guess)
             fit = min(fit, _best_of_axes(case, before, effects, problem, point, rival), key=lambda each: each.identify)
@@ -101,7 +110,8 @@ def refit_from(
     for guess in guesses or [{}]:
         if any(fit.total < AT_NOISE * case.floor for fit in fits):
             break
-        fits.append(refit(case, before, effects, guess, min([rival, *(fit.identify for fit in fits)])))
+        least = min(fits, key=lambda fit: fit.total, default=None)
+        fits.append(refit(case, before, effects, guess, min([rival, *(fit.identify for fit in fits)]), least))
     return min(fits, key=lambda fit: fit.total)
 
 
@@ -149,7 +159,13 @@ def values_in(problem: Problem, before: Fit) -> dict[str, float]:
 
 
 def _best_of_axes(
-    case: Case, before: Fit, effects: tuple[str, ...], problem: Problem, start: Array, rival: float
+    case: Case,
+    before: Fit,
+    effects: tuple[str, ...],
+    problem: Problem,
+    start: Array,
+    rival: float,
+    other: Fit | None = None,
 ) -> Fit:
     """The better of the fits with the effects on all axes and on the measured ones only, where the two differ."""
     variants = [(problem, False)]
@@ -157,13 +173,17 @@ def _best_of_axes(
         restricted = case.problem(effects, before.steps, True)
         if residuals_differ(case, problem.residuals(start)[0], restricted.residuals(start)[0]):
             variants.append((restricted, True))
-    fits = [
-        refine_steps(
-            case, fit_at(effects, variant, case.descend(variant, start, rival), measured_only=measured_only), rival
-        )
-        for variant, measured_only in variants
-    ]
+    fits = list[Fit]()
+    for variant, measured_only in variants:
+        fit = fit_at(effects, variant, case.descend(variant, start, rival), measured_only=measured_only)
+        fits.append(other if other and leads_no_lower(fit, other) else refine_steps(case, fit, rival))
     return min(fits, key=lambda fit: fit.total)
+
+
+def leads_no_lower(fit: Fit, other: Fit) -> bool:
+    """Whether a fit leaves no less than another one of the same parameters did before its steps were refined."""
+    same = fit.problem.names == other.problem.names
+    return same and other.coarse is not None and fit.identify >= (1 - NO_WORSE) * other.coarse
 
 
 def residuals_differ(case: Case, one: Array, other: Array) -> bool:
@@ -190,6 +210,7 @@ def refine_steps(case: Case, fit: Fit, rival: float = np.inf, checked: Sequence[
     problem = case.problem(fit.effects, steps, fit.measured_only)
     point = case.descend(problem, fit.point, rival)
     finer = fit_at(fit.effects, problem, point, fit.converged, fit.measured_only)
+    finer = replace(finer, coarse=fit.coarse or fit.identify)
     return refine_steps(case, finer, rival, coarse)
 
 

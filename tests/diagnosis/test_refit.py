@@ -33,9 +33,9 @@ def test_behind_a_refit_at_the_noise_no_other_guess_is_tried(creeping, monkeypat
     guesses = [{"creep.ratio": 0.05, "creep.tau": 2.0}, {"creep.ratio": 0.01, "creep.tau": 0.5}]
     tried = []
 
-    def noted(case, before, effects, guess, rival=np.inf):
+    def noted(case, before, effects, guess, rival=np.inf, other=None):
         tried.append((guess, rival))
-        fit = made(case, before, effects, guess, rival)
+        fit = made(case, before, effects, guess, rival, other)
         return fit if arrives else replace(fit, identify=2 * fit.identify, validate=2 * fit.validate)
 
     monkeypatch.setattr(refit, "refit", noted)
@@ -226,6 +226,29 @@ def test_no_step_is_refined_of_a_fit_that_stays_far_above_a_rival(monkeypatch):
     monkeypatch.setattr(refit, "step_errors", lambda case, fit, numbers: np.full(len(numbers), 0.2 * fit.identify))
     assert refit.refine_steps(creeping, fit, 0.3 * fit.identify) is fit
     assert refit.refine_steps(creeping, fit, 0.5 * fit.identify) is not fit
+
+
+@pytest.mark.parametrize(("shares", "refined"), [((0.5, 0.6), 1), ((0.6, 0.5), 2)])
+def test_steps_are_refined_of_no_guess_that_leads_no_lower_than_another(monkeypatch, shares, refined):
+    """Before either is: the share of what the model as given leaves to which the guesses lead in the first steps."""
+    creeping, made = stage.case(stage.EFFECTS["creep"]), []
+    before = first_fit(creeping, 0)
+
+    def finer(case, fit, *_):
+        made.append(fit)
+        return replace(fit, identify=1.1 * fit.identify, validate=1.1 * fit.validate, coarse=fit.identify)
+
+    led = iter(shares)
+    monkeypatch.setattr(refit, "refine_steps", finer)
+    monkeypatch.setattr(
+        refit,
+        "fit_at",
+        lambda *more, **_: replace(before, identify=(share := next(led)) * before.identify, validate=share),
+    )
+    monkeypatch.setattr(creeping, "descend", lambda problem, start, rival: start)
+    fit = refit.refit_from(creeping, before, (), [{}, {"bouc_wen.gain": before.values["bouc_wen.gain"] * 1.1}])
+    assert len(made) == refined
+    assert fit.identify == pytest.approx(1.1 * min(shares) * before.identify)
 
 
 def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
