@@ -53,7 +53,7 @@ def improve_as_usual(case: Case, first: Fit, on_step: StepListener) -> Staircase
     """The same, with drives as they are unless the model with the best effect says otherwise."""
     good = adequate(case, first, first)
     wide = not good and needs_wider_bounds(case, first)
-    if mended := None if good or wide else fault_instead(case, first, AHEAD):
+    if mended := None if good or (wide and is_within_wider_bounds(case, first)) else fault_instead(case, first, AHEAD):
         for step in mended.steps:
             on_step(step)
         return mended
@@ -110,6 +110,12 @@ def needs_wider_bounds(case: Case, first: Fit) -> bool:
     return bool(beyond and are_to_blame(case, beyond[0], first, beyond[1]))
 
 
+def is_within_wider_bounds(case: Case, first: Fit) -> bool:
+    """Whether nothing but bounds is missing of the model as given."""
+    beyond = beyond_bounds(case, first, first)
+    return bool(beyond and adequate(case, first, beyond[1]))
+
+
 def improve_aged(case: Case, first: Fit, aged: Case, start: Fit, on_step: StepListener) -> Staircase:
     """The staircase where the model follows what was before the records, if it must."""
     return with_least_history(case, first, improve_otherwise(case, first, aged, start, BEFORE, on_step))
@@ -141,7 +147,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     wide = None
     if beyond and are_to_blame(case, beyond[0], first, beyond[1]):
         wide = improve_beyond(case, first, *beyond, on_step)
-        if accounts(wide, case, first):
+        if wide.last.faults or accounts(wide, case, first):
             return wide
         may_do = keeps_within(wide, case) or near_noise(case, first, wide.end)
         if may_do and not case.budget.allows("effects within the bounds of the job"):
@@ -201,17 +207,19 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
     records leaves there less than half of what the best that passes leaves; ahead of these, where they do not lead to
     the noise and none is there within but on bounds of the job, that of the next best, in any form, which is adequate
-    beyond these, and clearly lower than those on them."""
+    beyond these, and clearly lower than those on them; of the best itself where two others are to be begun with."""
     fits = [fit for candidate in diagnosis.candidates for fit in candidate.refits.values()]
     passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
-    best, *others = sorted(fits, key=lambda fit: fit.identify) or [first]
+    ordered = sorted(fits, key=lambda fit: fit.identify) or [first]
+    best = ordered[0]
     by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
     found = beyond_bounds(case, first, best) if by_far else None
     there = [fit for fit in fits if adequate(case, first, fit)]
     if (found and leads(case, first, found[1])) or any(not widened(case, fit).keys() & case.specs for fit in there):
         return found
     least = min((fit.total for fit in there), default=np.inf)
-    for fit in others[: BESIDE - 1]:
+    two, own = diagnosis.account, {*best.effects} - {*first.effects}
+    for fit in ordered[two is None or own <= {*two.effects} : BESIDE]:
         of_the_job = widened(case, fit).keys() <= case.specs.keys()
         beyond = beyond_bounds(case, first, fit) if of_the_job and case.budget.allows("wider bounds") else None
         if beyond and leads(case, first, beyond[1]) and removed_rms(least, beyond[1].total) > TIE * case.floor:
@@ -222,6 +230,10 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
     """The staircase with wider bounds, whose model follows what was before the records, if it must."""
     steps = [Step(first), Step(start, explained=explained_share(case, first, start), change=WIDER, case=wide)]
+    if mended := None if adequate(wide, first, start) else fault_instead(wide, start, AHEAD):
+        for step in [*steps, *mended.steps[1:]]:
+            on_step(step)
+        return replace(mended, steps=[*steps, *mended.steps[1:]], case=wide)
     diagnosis = diagnose(wide, start)
     told = None if diagnosis.verdict in SETTLED else with_history(wide, start, diagnosis)
     if told is None:

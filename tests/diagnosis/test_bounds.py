@@ -371,8 +371,20 @@ def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_wi
     specs = {"bouc_wen.alpha": None}
     monkeypatch.setattr(staircase, "widened", lambda case, fit: specs if id(fit) in resting else {})
     monkeypatch.setattr(staircase, "beyond_bounds", lambda case, first, fit: (case, wide) if fit is other else little)
-    found = bounds_beside(case, first, SimpleNamespace(candidates=items, passing=[] if own else items))
+    found = bounds_beside(case, first, SimpleNamespace(candidates=items, passing=[] if own else items, account=None))
     assert found == ((case, wide) if taken else little)
+
+
+@pytest.mark.parametrize("others", [("resonance", "creep"), ("quadratic_gain", "creep"), None])
+def test_the_best_effect_is_gone_on_with_beyond_a_bound_of_the_job_ahead_of_two_others(others):
+    """Which account for all within the bounds."""
+    case = lifted()
+    diagnosis = diagnose(case, first := first_fit(case, 0))
+    for item in diagnosis.candidates:
+        item.account = None
+    diagnosis.best.account = replace(first, effects=others) if others else None
+    found = bounds_beside(case, first, diagnosis)
+    assert (found[1].effects if found else None) == (("quadratic_gain",) if others and "resonance" in others else None)
 
 
 WEIGHTS = {f"prandtl_ishlinskii.weight_{i + 1}": 4e-9 for i in range(8)}

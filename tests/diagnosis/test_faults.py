@@ -9,6 +9,7 @@ import rig
 import stage
 from made_fits import CASE, fit
 from pzt_ident.diagnosis import faults, thinning
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.faults import Fault, fault_instead, without_outdone
 from pzt_ident.diagnosis.possible import applicable
@@ -19,6 +20,7 @@ from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.model.registry import blocks
 
+GAIN = 1e6 * stage.STAGE["bouc_wen.gain"]  # um/V
 GAP = 0.12e-6  # m
 RUBBING = {"friction.force": GAP, "friction.reach": GAP, "friction.stiction": 0.0, "friction.stribeck": 1.0}
 
@@ -113,10 +115,12 @@ FAULTY = {
 
 
 @pytest.mark.parametrize("word", blocks.faults())
-def test_every_fault_is_told_with_its_size_and_never_added(word):
-    """Each made by code of its own."""
+@pytest.mark.parametrize("least", [None, 1.05])
+def test_every_fault_is_told_with_its_size_and_never_added(word, least):
+    """Each made by code of its own. least: of the true gain, where the bounds of the job leave that out."""
     missing, sizes = FAULTY[word]
-    case = stage.with_response(stage.case(), missing)
+    bounds = {"bouc_wen.gain": Widened((least * GAIN, 1.6 * GAIN))} if least else {}
+    case = stage.with_response(stage.case(), missing).with_specs(bounds)
     found = thinning.improve(case, lambda case: first_fit(case, 0))
     assert (found.last.verdict, found.last.faults, found.end.effects) == ("unexplained", (word,), ())
     (with_it,) = (step.fit for step in found.steps if step.added == word)
