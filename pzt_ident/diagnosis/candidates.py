@@ -134,9 +134,11 @@ def seconds_beside(case: Case, first: Fit, fit: Fit) -> list[Score]:
 
 
 def drop_outdone_accounts(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
-    """Drop what two effects account for together where one does alone."""
-    if any(adequate(case, first, fit) for candidate in candidates for fit in candidate.refits.values()):
-        for candidate in candidates:
+    """Drop what two effects account for together where one does alone, or leaves no more."""
+    fits = [fit for candidate in candidates for fit in candidate.refits.values()]
+    least = 0.0 if any(adequate(case, first, fit) for fit in fits) else min((fit.total for fit in fits), default=np.inf)
+    for candidate in candidates:
+        if candidate.account and candidate.account.total >= least:
             candidate.account = None
 
 

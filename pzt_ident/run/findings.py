@@ -103,8 +103,9 @@ def size_of(case: Case) -> float:
 
 
 def ties(steps: list[stairs.Step]) -> list[stairs.Step]:
-    """The stairs of effects that the last model has and these data cannot tell from others."""
-    return [step for step in steps if len(step.rivals) > 1 and step.added in steps[-1].fit.effects]
+    """The stairs of effects that the last model has and these data cannot tell from others, of each the last."""
+    last = {step.added: step for step in steps}
+    return [step for step in last.values() if len(step.rivals) > 1 and step.added in steps[-1].fit.effects]
 
 
 def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:

@@ -88,3 +88,13 @@ def test_what_is_to_be_said_of_the_last_fit_is_said_once(monkeypatch, tmp_path):
     assert findings.improvement_of(job, case, staircase, last)["reason"].count("ended on its bound") == 1
     unfinished = {"verdict": "unfinished", "reason": "It did not come to its end."}
     assert findings.improvement_of(job, case, staircase, unfinished)["reason"].count("ended on its bound") == 1
+
+
+def test_of_an_effect_that_was_exchanged_and_came_back_the_last_tie_is_told():
+    lag, other = (SimpleNamespace(effects=(word,)) for word in ("amplifier_lag", "sensor_lag"))
+    steps = [
+        stairs.Step(lag, "amplifier_lag", None, {"amplifier_lag": lag, "sensor_lag": other}),
+        stairs.Step(other, "sensor_lag", "amplifier_lag", {"sensor_lag": other}),
+        stairs.Step(lag, "amplifier_lag", "sensor_lag", {"amplifier_lag": lag, "delay": other}),
+    ]
+    assert findings.ties(steps) == steps[2:]
