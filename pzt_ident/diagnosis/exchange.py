@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, beyond_form, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import from_modes_exchanged
-from pzt_ident.diagnosis.limit import is_limited, own_bounds
+from pzt_ident.diagnosis.limit import is_limited, own_bounds, shapes_at_ends
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable, fitting_forms
 from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_beside
@@ -93,13 +93,15 @@ def forms_instead(case: Case, first: Fit, now: Fit) -> list[Step]:
 
 
 def exchange_limits(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Steps from effects of which a shape ended on a bound to the simplest form without it that fits as well: a drift
-    that never settles is a ramp."""
+    """Steps from effects of which a shape ended on a bound to the simplest form without it that fits as well, or only
+    to a simpler one where its range ends there of itself: a drift that never settles is a ramp."""
     steps: list[Step] = []
     for effect in now.effects[len(first.effects) :]:
-        if not own_bounds(now, effect) or not case.budget.allows("other forms", PROVING):
+        limited = bool(own_bounds(now, effect))
+        if not (limited or shapes_at_ends(now, effect)) or not case.budget.allows("other forms", PROVING):
             continue
         fits = fits_in_place(case, now, effect, other_forms(case, now, effect))
+        fits = [fit for fit in fits if limited or fit.freedom < now.freedom]
         free = [fit for fit in fits if is_equal(case, now, fit) and not own_bounds(fit, fit.effects[-1])]
         if free:
             steps.append(exchange_step(case, now, min(free, key=lambda fit: (fit.freedom, fit.total)), effect))

@@ -65,13 +65,13 @@ class Fit:
         problem, values = self.problem, self.problem.physical(self.point)[0]
         parameters = [problem.model.entries[column].parameter for column in problem.free]
         bounds = np.where(self.point < 0.5, "lower", "upper").tolist()
-        rows = zip(problem.names, self._at_edges, values, bounds, parameters, strict=True)
+        rows = zip(problem.names, self.at_edges, values, bounds, parameters, strict=True)
         return tuple(
             name for name, edge, value, bound, parameter in rows if edge and not parameter.ends_at(value, bound)
         )
 
     @property
-    def _at_edges(self) -> NDArray[np.bool_]:
+    def at_edges(self) -> NDArray[np.bool_]:
         """Which parameters are on a bound or so near that the model is no worse there: (free,)."""
         bounds = np.round(self.point)
         edges = np.abs(self.point - bounds) <= EDGE

@@ -28,6 +28,12 @@ def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
     return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
 
 
+def shapes_at_ends(fit: Fit, effect: str) -> list[str]:
+    """The shapes of an effect that are on a bound, be it one at which their range ends of itself."""
+    there = {name for name, edge in zip(fit.problem.names, fit.at_edges, strict=True) if edge}
+    return [name for name in own_entries(fit, effect).keys() - amounts_of(fit, effect) if name in there]
+
+
 def amounts_of(fit: Fit, effect: str) -> set[str]:
     """The free amounts of an effect, its parameters with a null."""
     return {name for name, entry in own_entries(fit, effect).items() if entry.parameter.null is not None}

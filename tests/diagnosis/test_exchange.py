@@ -11,6 +11,7 @@ from pzt_ident.diagnosis import exchange
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.exchange import exchange_limits, forms_instead, in_its_limit
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.limit import own_bounds
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
 
@@ -40,12 +41,25 @@ def test_a_drift_whose_time_is_on_its_bound_is_a_ramp_where_that_fits_as_well(on
     late = [replace(record, response=record.response + 1e-6 * record.time) for record in made]
     case = Case(("bouc_wen",), (), late, stage.specs({}))
     first, problem = first_fit(case, 0), case.problem(("drift",))
-    now = fit_at(("drift",), problem, problem.unit_point(first.values | {"drift.tau": 1.0}))
+    now = fit_at(("drift",), problem, problem.unit_point(first.values | {"drift.tau": 1.0 if on_bound else 30.0}))
     resting = {"drift": ("drift.tau",)} if on_bound else {}
     monkeypatch.setattr(exchange, "own_bounds", lambda fit, effect: resting.get(effect, ()))
     steps = exchange_limits(case, first, now)
     assert [(step.added, step.removed) for step in steps] == ([("drift.ramp", "drift")] if on_bound else [])
     assert all(step.fit.total < 1.01 * now.total for step in steps)
+
+
+@pytest.mark.parametrize(("share", "simpler"), [(0.8, True), (0.5, False)])
+def test_a_filter_on_the_end_of_its_shapes_is_one_of_fewer_poles_where_that_fits_as_well(share, simpler):
+    """It is in no limit there, and no form of more parameters takes its place."""
+    case = stage.case({"sensor_lag.tau": 0.03})
+    first, item = first_fit(case, 0), "sensor_lag.third_order"
+    problem = case.problem((item,))
+    values = {"sensor_lag.tau": 0.03, "sensor_lag.share": share, "sensor_lag.damping": 0.7}
+    now = fit_at((item,), problem, problem.unit_point(first.values | values))
+    assert not own_bounds(now, item)
+    steps = exchange_limits(case, first, now)
+    assert [step.added for step in steps] == (["sensor_lag"] if simpler else [])
 
 
 @pytest.mark.parametrize(("place", "worse", "in_limit"), [(1.0, 1.09, True), (1.0, 1.11, False), (0.5, 1.09, False)])
