@@ -80,8 +80,21 @@ def fault_instead(case: Case, first: Fit, share: float = WHOLE) -> Staircase | N
     diagnosis = diagnose(case, first)
     if any(item.fit and stands_beside(case, fit, item.fit) for item in diagnosis.candidates):
         return None
+    return told_instead(case, first, diagnosis, word, fit)
+
+
+def told_instead(case: Case, first: Fit, diagnosis: Diagnosis, word: str, fit: Fit) -> Staircase:
+    """The staircase of the model as given of which a fault is the account. fit: with it."""
     steps = [Step(first), *there_and_back(case, first, word, fit)]
     return Staircase(steps, blamed_on(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
+
+
+def fault_within_bounds(case: Case, first: Fit, mended: Staircase) -> Staircase | None:
+    """The same of a fault that was told beyond the bounds of the job, if it leads to the noise within them, too: then
+    these are not too narrow. None where it does not."""
+    (word,) = mended.last.faults
+    fit = case.faults.get(word)
+    return told_instead(case, first, mended.last, word, fit) if fit and adequate(case, first, fit) else None
 
 
 def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:

@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
 from pzt_ident.diagnosis.drive_shape import better_as_usual, has_other, other_behind, way_of, with_other_drives
-from pzt_ident.diagnosis.faults import AHEAD, fault_instead
+from pzt_ident.diagnosis.faults import AHEAD, fault_instead, fault_within_bounds
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
@@ -231,9 +231,11 @@ def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: Step
     """The staircase with wider bounds, whose model follows what was before the records, if it must."""
     steps = [Step(first), Step(start, explained=explained_share(case, first, start), change=WIDER, case=wide)]
     if mended := None if adequate(wide, first, start) else fault_instead(wide, start, AHEAD):
-        for step in [*steps, *mended.steps[1:]]:
+        beyond = replace(mended, steps=[*steps, *mended.steps[1:]], case=wide)
+        staircase = fault_within_bounds(case, first, mended) or beyond
+        for step in staircase.steps:
             on_step(step)
-        return replace(mended, steps=[*steps, *mended.steps[1:]], case=wide)
+        return staircase
     diagnosis = diagnose(wide, start)
     told = None if diagnosis.verdict in SETTLED else with_history(wide, start, diagnosis)
     if told is None:

@@ -128,6 +128,17 @@ def test_every_fault_is_told_with_its_size_and_never_added(word, least):
     assert known == {name: pytest.approx(size, rel=0.1) for name, size in sizes.items()}
 
 
+@pytest.mark.parametrize("left", [1.0, 3.0])
+def test_bounds_are_not_too_narrow_where_a_fault_leads_to_the_noise_within_them(left):
+    case = loose()
+    first = first_fit(case, 0)
+    mended = fault_instead(case, first)
+    case.faults["backlash"] = fit(left * case.floor, left * case.floor, ["backlash"])
+    found = faults.fault_within_bounds(case, first, mended)
+    assert (found is not None) == (left == 1.0)
+    assert found is None or (found.case is None and [step.added for step in found.steps] == [None, "backlash", None])
+
+
 def test_friction_that_gives_before_it_slides_is_no_backlash():
     case = stage.case(RUBBING, effects=())
     case.records = stage.records(RUBBING, effects=stage.EFFECTS | {"friction": {}})
